@@ -1,0 +1,59 @@
+// Step 4 of the frame: brings the tissue forward in time under elastic, body and contact forces.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scene/scene.h"
+#include "tissue/tissue.h"
+
+namespace meshless_cutting {
+
+/// Errors of a step are values. Each bit: what happened, what follows from it.
+enum StepStatus : std::uint32_t {
+  kStepOk = 0,
+  kStepNotConverged = 1 << 0,  // residual above the tolerance when the iterations ran out; the state is finite and usable
+  kStepRolledBack = 1 << 1,    // a trial state was not usable; the frame was repeated in halves from the last good state
+  kStepFrozen = 1 << 2,        // even the halves failed: positions of the last frame are kept, velocities are zero
+};
+
+/// What to solve. Absent parts are never built.
+struct DynamicsConfig {
+  double time_step_s = 1.0 / 60;
+  MaterialConfig material;
+  SolverConfig solver;
+  std::optional<Eigen::Vector3d> gravity_m_s2;  // scene frame
+  std::optional<DampingConfig> damping;
+  std::vector<ObstacleConfig> obstacles;  // scene frame
+};
+
+struct AdvanceResult {
+  std::uint32_t status = kStepOk;
+  int newton_iterations = 0;
+  int linear_iterations = 0;
+  double relative_residual = 0;  // reached by the last Newton iteration
+  int contacts = 0;              // skin vertices that touch an obstacle
+  double kinetic_j = 0, elastic_j = 0, gravity_j = 0;
+};
+
+/// Time integration and the solver behind it. The tissue and the state belong to the caller.
+class Dynamics {
+ public:
+  Dynamics(const DynamicsConfig& config, const Tissue& tissue);
+  ~Dynamics();
+
+  /// Call after the tissue changed (a cut); re-indexes, sizes buffers.
+  void TissueChanged(const Tissue& tissue);
+
+  /// One time step of config.time_step_s. `skin` are the vertices that touch obstacles; unused without obstacles.
+  /// Same input, same bits, whatever config.solver.threads is. Allocates nothing unless the tissue or the skin grew.
+  AdvanceResult Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace meshless_cutting

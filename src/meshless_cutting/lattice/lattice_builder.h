@@ -1,0 +1,30 @@
+// Fills a triangle mesh with a tetrahedral lattice: isosurface stuffing (Labelle & Shewchuk 2007).
+#pragma once
+
+#include "lattice/lattice.h"
+#include "lattice/triangle_mesh.h"
+
+namespace meshless_cutting {
+
+struct LatticeReport {
+  Eigen::Vector3d spacing = Eigen::Vector3d::Zero();  // m, lattice size per axis as fitted to the bounding box
+  double input_to_skin_max_m = 0;  // largest distance of a sample of the input surface from the skin
+  double input_to_skin_mean_m = 0;
+  double skin_to_input_max_m = 0;  // largest distance of a skin vertex from the input surface
+  double min_dihedral_deg = 0;     // over all tetrahedra
+  double max_dihedral_deg = 0;
+  double volume_m3 = 0;            // enclosed by the skin
+};
+
+struct FilledLattice {
+  Lattice lattice;
+  LatticeReport report;
+};
+
+/// Body-centred cubic lattice of about `lattice_size` (m), cut off at the surface of `mesh`. A point is inside where the
+/// generalised winding number is above one half, so holes, flipped or doubled faces and self-intersections are allowed.
+/// The lattice size is fitted per axis so that the bounding box is a whole number of lattice cubes: boxes come out exact.
+/// Vertices of the skin lie on the input surface. Throws std::runtime_error when nothing is inside.
+FilledLattice FillWithLattice(const TriangleMesh& mesh, double lattice_size);
+
+}  // namespace meshless_cutting

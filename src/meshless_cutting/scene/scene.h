@@ -1,0 +1,102 @@
+// What a scene file says, as plain values: read by scene_reader.h, built by simulation.cpp.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace meshless_cutting {
+
+/// Axis-aligned box, closed, in the frame that its owner names.
+struct Box {
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();  // m
+};
+
+enum class MaterialModel { kStableNeoHookean, kNeoHookean, kStVenantKirchhoff, kLinear };
+
+struct MaterialConfig {
+  MaterialModel model = MaterialModel::kStableNeoHookean;
+  double youngs_modulus_pa = 0;
+  double poisson_ratio = 0;
+  double density_kg_m3 = 0;
+};
+
+/// The tissue. The *object frame* is the mesh's own frame after scaling; rest positions, `fixed` and everything that is
+/// called "rest" are in it. `T_WO` places the object frame in the scene frame W at the start.
+struct ObjectConfig {
+  std::string name;
+  std::filesystem::path mesh;  // resolved, absolute
+  double scale = 1;            // mesh units to metres
+  Eigen::Isometry3d T_WO = Eigen::Isometry3d::Identity();
+  double cell_size_m = 0;     // background grid
+  double lattice_size_m = 0;  // resolution of cuts and of the skin
+  MaterialConfig material;
+  std::vector<Box> fixed;             // object frame; empty: nothing is held
+  double support_radius_cells = 0.9;  // MLS support about the centre of a cell
+};
+
+struct PlaneObstacle {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();     // m, scene frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   // unit, points to where tissue may be
+};
+struct BoxObstacle {
+  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();             // m
+  Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();             // centre of the box in the scene frame
+};
+struct ObstacleConfig {
+  std::variant<PlaneObstacle, BoxObstacle> shape;
+  double friction = 0;  // Coulomb coefficient
+};
+
+struct DampingConfig {
+  double mass_per_s = 0;   // Rayleigh, proportional to mass
+  double stiffness_s = 0;  // Rayleigh, proportional to stiffness
+};
+
+enum class Integrator { kGeneralizedAlpha, kImplicitEuler };
+
+struct SolverConfig {
+  Integrator integrator = Integrator::kGeneralizedAlpha;
+  double relative_tolerance = 1e-3;  // Newton stops when the residual has fallen to this share of the step's loads
+  int newton_iterations = 4;         // at most, per step
+  int threads = 2;                   // the result does not depend on it
+};
+
+struct TopicPoseSource {
+  std::string topic;
+};
+struct TfPoseSource {
+  std::string frame;
+};
+struct FixedPoseSource {
+  Eigen::Isometry3d T_WT = Eigen::Isometry3d::Identity();
+};
+
+struct ToolConfig {
+  std::string name;
+  std::vector<Eigen::Vector3d> cutting_edge;  // m, polyline in the tool frame, >= 2 points; empty when urdf_link is set
+  std::string urdf_link;                      // take the edge from this link of robot_description
+  std::variant<TopicPoseSource, TfPoseSource, FixedPoseSource> pose_source;
+  double max_speed_m_s = 2.0;  // faster between two samples: a jump, not a motion
+  double timeout_s = 0.1;      // no sample for this long: the blade is inactive
+};
+
+/// A whole scene. A part that is absent here is never built.
+struct Scene {
+  std::filesystem::path file;  // where it was read from, for messages
+  std::string text;            // the file as read, for the record
+  std::string frame = "world";
+  double time_step_s = 1.0 / 60;
+  ObjectConfig object;
+  std::optional<Eigen::Vector3d> gravity_m_s2;  // scene frame
+  std::vector<ObstacleConfig> obstacles;        // scene frame
+  std::optional<DampingConfig> damping;
+  std::vector<ToolConfig> tools;
+  SolverConfig solver;
+};
+
+}  // namespace meshless_cutting

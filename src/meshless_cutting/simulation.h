@@ -1,0 +1,101 @@
+// One soft object, the tools that cut it, and the frame that brings both forward. No ROS, no clock, no global state: the same
+// scene and the same samples give the same bits, whatever the number of threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dynamics/dynamics.h"
+#include "lattice/lattice_builder.h"
+#include "scene/scene.h"
+#include "surface/surface.h"
+#include "tool/tool.h"
+
+namespace meshless_cutting {
+
+enum class CutEventType : std::uint8_t { kStarted = 0, kProgress = 1, kEnded = 2, kSeparated = 3, kJumpRefused = 4 };
+
+/// Something that a tool did during a frame. STARTED and PROGRESS carry what this frame cut, ENDED the sums of the stroke.
+struct CutEvent {
+  CutEventType type = CutEventType::kProgress;
+  int tool = -1;            // index in the scene
+  int stroke = 0;           // counts the strokes of this tool from 1
+  int links_cut = 0;
+  double area_m2 = 0;       // cut face added, one lip, at rest
+  double length_m = 0;      // way of the cutting part of the blade through the tissue, at rest
+  double depth_m = 0;       // length of blade edge that was in the tissue, greatest so far in the stroke
+  std::vector<Eigen::Vector3d> points;       // where links were cut, scene frame, m
+  std::vector<Eigen::Vector3d> rest_points;  // the same at rest, object frame, m
+  std::vector<double> fragment_volume_m3;    // SEPARATED: all fragments after it, largest first
+};
+
+/// What one frame cost and how good it is. Times are wall times of this run and the only thing here that is not reproducible.
+struct StepStatistics {
+  std::uint64_t step = 0;    // frames since load or reset, this one included
+  double time_s = 0;         // simulated time at its end
+  std::uint32_t status = kStepOk;
+  double move_tools_s = 0, find_crossings_s = 0, cut_s = 0, advance_s = 0, map_surface_s = 0, total_s = 0;  // wall
+  int newton_iterations = 0, linear_iterations = 0;
+  double relative_residual = 0;  // reached
+  int particles = 0, integration_points = 0, links = 0, links_cut = 0, vertices = 0, triangles = 0, fragments = 0;
+  int contacts = 0;              // skin vertices that touch an obstacle
+  double kinetic_j = 0, elastic_j = 0, gravity_j = 0;  // energies; gravity relative to the scene origin
+};
+
+/// Which parts were built at load. A part that is false costs nothing in any frame.
+struct BuiltParts {
+  bool gravity = false, damping = false, fixed = false, obstacles = false, tools = false;
+};
+
+/// Called during a long load: stage in words, share done in [0, 1].
+using Progress = std::function<void(const std::string& stage, double share)>;
+
+class Simulation {
+ public:
+  /// Builds everything. Throws std::runtime_error with one line naming scene file, key, value, expectation.
+  explicit Simulation(const Scene& scene, const Progress& progress = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// Back to the state after the constructor, without the load.
+  void Reset();
+
+  /// Hands a sample to tool `tool`; time on the clock that StartAt() set.
+  SampleVerdict AddToolSample(int tool, const ToolSample& sample);
+  bool SetToolEdge(int tool, const std::vector<Eigen::Vector3d>& points);
+
+  /// Simulated time of the start of the first frame; only before the first Step(). Default 0.
+  void StartAt(double time_s);
+
+  /// One frame: move tools, find crossings, cut, advance, map the surface.
+  void Step();
+
+  // What the last Step() left; valid until the next one.
+  const Surface& surface() const;
+  const std::vector<CutEvent>& events() const;
+  const StepStatistics& statistics() const;
+  const BuiltParts& parts() const;
+
+  const Scene& scene() const;
+  const LatticeReport& lattice_report() const;
+  /// Tool pose and blade polyline (scene frame) at the end of the last frame; blade empty while inactive.
+  const Tool& tool(int index) const;
+  std::vector<Eigen::Vector3d> blade(int index) const;
+
+  /// The paper's Fig. 12: integration points now (scene frame, m), and for each surface vertex the point it is mapped on.
+  std::vector<Eigen::Vector3d> IntegrationPointPositions() const;
+  std::vector<int> MappedPoints() const;
+
+  /// All invariants of topology and mapping, for tests; empty when they hold, else the first that does not, in words.
+  std::string CheckInvariants() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,66 @@
+// A tool: screens the pose samples that come in and turns those of one frame into the motion of its blade.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "tool/blade_motion.h"
+
+namespace meshless_cutting {
+
+/// A pose of the tool in the scene frame as it came in. Nothing is assumed of its values.
+struct ToolSample {
+  double time_s = 0;             // on the clock of the session
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector4d orientation_xyzw = Eigen::Vector4d::UnitW();
+};
+
+/// What became of a sample. Everything but kAccepted and kJump is refused and only counted; a jump re-anchors the blade.
+enum class SampleVerdict { kAccepted, kNotFinite, kZeroQuaternion, kBackInTime, kDuplicate, kJump };
+inline constexpr int kSampleVerdicts = 6;
+
+/// One tool of the scene with its recent past.
+class Tool {
+ public:
+  explicit Tool(const ToolConfig& config);
+
+  /// Queues a sample for the frame in which its time lies. Samples of one tool come in order of time.
+  SampleVerdict Add(const ToolSample& sample);
+
+  /// The blade's motion in the frame that covers (t0_s, t1_s]; consumes the samples up to t1_s.
+  /// Before the first sample, and when none came for config.timeout_s, the blade is inactive (empty motion).
+  BladeMotion Move(double t0_s, double t1_s);
+
+  /// A blade that bends: replaces the polyline (tool frame, m) from the next frame on. False (and unchanged) when the number of points
+  /// differs or a coordinate is not finite.
+  bool SetEdge(const std::vector<Eigen::Vector3d>& points);
+
+  const ToolConfig& config() const { return config_; }
+  /// Pose at the end of the last frame; nothing before the first sample.
+  const std::optional<Eigen::Isometry3d>& pose() const { return T_WT_; }
+  /// Jumps refused during the last Move().
+  int jumps() const { return jumps_; }
+
+ private:
+  struct Queued {
+    double time_s;
+    Eigen::Isometry3d T_WT;
+    bool jump;
+  };
+  std::vector<Eigen::Vector3d> BladeAt(const Eigen::Isometry3d& T_WT) const;
+
+  ToolConfig config_;
+  std::vector<Eigen::Vector3d> edge_;       // polyline, tool frame, m
+  std::vector<Eigen::Vector3d> edge_next_;  // what edge_ becomes in the next frame
+  std::vector<Queued> queue_;
+  std::optional<Queued> newest_;                 // last accepted sample, for the screening
+  std::optional<Eigen::Isometry3d> T_WT_;        // at the end of the last frame
+  std::optional<std::vector<Eigen::Vector3d>> blade_;  // polyline at the end of the last frame while active, scene frame
+  double last_sample_s_ = 0;
+  int jumps_ = 0;
+};
+
+}  // namespace meshless_cutting
