@@ -1,0 +1,64 @@
+// Where lattice vertices were published last and where they are now: the object's half of a crossing window.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "cut/cut_surface.h"
+#include "surface/vertex_mapping.h"
+
+namespace meshless_cutting {
+
+/// Positions of the lattice vertices at the two ends of the window, scene frame. Vertices of the skin are the drawn ones; inside the
+/// object a vertex gets a position only when one is asked for. Windows of consecutive frames chain without a gap, also
+/// where a vertex was mapped anew: its window starts where it was published.
+class LatticeMotion {
+ public:
+  LatticeMotion(const Lattice& lattice, const CutSurface& surface, const IntegrationPoints& points,
+                const ShapeFunctions& shape, const Tissue& tissue);
+
+  /// After the frame's advance: particle and surface positions at both ends of the window of the next frame.
+  void SetWindow(const std::vector<Eigen::Vector3d>* particles_t0, const std::vector<Eigen::Vector3d>* particles_t1,
+                 const std::vector<Eigen::Vector3d>* surface_t0, const std::vector<Eigen::Vector3d>* surface_t1);
+
+  /// During a cut, before the tissue changes: the inner vertices that will be mapped anew keep where they are as the start of the next window.
+  /// `particles`: positions now. Then Remap() once the tissue has changed.
+  void KeepStart(const std::vector<int>& vertices, const std::vector<Eigen::Vector3d>& particles);
+  void Remap(const std::vector<int>& vertices);
+  /// Forgets what KeepStart() kept; call when a window has been searched.
+  void ForgetStarts();
+
+  Eigen::Vector3d Start(int vertex) const;
+  Eigen::Vector3d End(int vertex) const;
+
+  // For the broad phase: vertices that are mapped on the same integration point form a block.
+  int block(int vertex) const { return mapping_.point(vertex); }
+  int block_count() const { return static_cast<int>(block_vertices_.size()); }
+  const std::vector<int>& block_vertices(int block) const { return block_vertices_[block]; }
+  /// Blocks that some lattice edge leads to from this one (a superset: never shrinks). Sorted.
+  const std::vector<int>& block_neighbours(int block) const { return block_neighbours_[block]; }
+  /// Particles that bound the vertices of a block, but for its loose ones.
+  const int* block_particles(int block) const { return &tissue_->point_particles[static_cast<size_t>(block) * tissue_->support_size]; }
+  int support_size() const { return tissue_->support_size; }
+  /// True when the particles of the vertex's block do not bound it: a skin vertex, or one mapped from outside a cell.
+  bool loose(int vertex) const { return surface_->VertexOf(vertex) >= 0 || !mapping_.convex(vertex); }
+  const std::vector<Eigen::Vector3d>& particles_t0() const { return *particles_t0_; }
+  const std::vector<Eigen::Vector3d>& particles_t1() const { return *particles_t1_; }
+
+  const VertexMapping& mapping() const { return mapping_; }
+
+ private:
+  void Link(int vertex);
+
+  const Lattice* lattice_;
+  const CutSurface* surface_;
+  const Tissue* tissue_;
+  VertexMapping mapping_;  // all lattice vertices; those of the skin use it for their block alone
+  std::vector<std::vector<int>> block_vertices_, block_neighbours_;
+  std::vector<std::pair<int, Eigen::Vector3d>> kept_;       // sorted by vertex
+  const std::vector<Eigen::Vector3d>*particles_t0_ = nullptr, *particles_t1_ = nullptr;
+  const std::vector<Eigen::Vector3d>*surface_t0_ = nullptr, *surface_t1_ = nullptr;
+};
+
+}  // namespace meshless_cutting

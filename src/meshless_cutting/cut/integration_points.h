@@ -1,0 +1,66 @@
+// Integration points: in each cell of the background grid, one per connected group of tetrahedron pieces.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cut/cell_volumes.h"
+#include "cut/cut_surface.h"
+#include "cut/material_graph.h"
+#include "tissue/background_grid.h"
+
+namespace meshless_cutting {
+
+/// The material of one point: volume and centroid are those of the pieces themselves, clipped by the cell, so a cut keeps the sum
+/// of both to rounding.
+struct IntegrationPoint {
+  int cell = -1;
+  double volume = 0;                                   // m^3, at rest
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // m, object frame
+  std::vector<int> vertices;                           // lattice vertices of its pieces, sorted; some may lie outside the cell
+  int parent = -1;  // the point it was split from in the last Update(), or itself
+};
+
+/// Groups are read from the graph. They only ever split: the largest part keeps the index, others get new ones at the end.
+class IntegrationPoints {
+ public:
+  IntegrationPoints(const Lattice& lattice, const MaterialGraph& graph, const BackgroundGrid& grid);
+
+  /// Call after a cut with the tetrahedra whose pieces changed. Returns the points that changed or are new, sorted.
+  const std::vector<int>& Update(const CutSurface& surface, const std::vector<int>& tetrahedra);
+
+  const std::vector<IntegrationPoint>& points() const { return points_; }
+  /// Points in a cell.
+  const std::vector<int>& InCell(int cell) const { return cells_[cell].points; }
+  /// Points that a lattice vertex belongs to: those in the cells that its pieces reach into. Sorted.
+  const std::vector<int>& OfVertex(int vertex) const { return vertex_points_[vertex]; }
+  /// Points joined to p by common material: they share a lattice vertex. Sorted, without p.
+  const std::vector<int>& Neighbours(int p) const { return neighbours_[p]; }
+
+ private:
+  struct Chip {  // what a piece of a tetrahedron has in a cell
+    int tetrahedron;
+    int anchor;  // a lattice vertex of the piece
+    double volume;
+    Eigen::Vector3d moment;
+  };
+  struct Cell {
+    std::vector<Chip> chips;
+    std::vector<int> points;
+  };
+  void AddChips(int tetrahedron, int anchor, const std::vector<CellVolume>& parts);
+  void Regroup(int cell);
+  void Relink(const std::vector<int>& points);
+
+  const Lattice* lattice_;
+  const MaterialGraph* graph_;
+  const BackgroundGrid* grid_;
+  std::vector<Cell> cells_;
+  std::vector<IntegrationPoint> points_;
+  std::vector<std::vector<int>> vertex_points_;
+  std::vector<std::vector<int>> neighbours_;
+  std::vector<int> changed_;
+  std::vector<int> root_;  // scratch of Regroup: per lattice vertex, -1 between calls
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,119 @@
+#include "cut/twins.h"
+
+#include <algorithm>
+#include <map>
+
+namespace meshless_cutting {
+
+Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points, double density_kg_m3,
+             const std::vector<Box>& fixed, Tissue& tissue)
+    : grid_(&grid), shape_(&shape), points_(&points), density_(density_kg_m3), fixed_(fixed) {
+  tissue.support_size = shape.support_size();
+  std::vector<int> all(points.points().size()), source;
+  for (size_t p = 0; p < all.size(); ++p) all[p] = static_cast<int>(p);
+  Update(all, tissue, source);
+}
+
+void Twins::FillPoint(int p, Tissue& tissue) const {
+  const int K = tissue.support_size;
+  const IntegrationPoint& point = points_->points()[p];
+  if (p == tissue.point_count()) {
+    tissue.point_volume.push_back(0);
+    tissue.point_rest.emplace_back();
+    tissue.point_gradients.resize(tissue.point_gradients.size() + K);
+    for (int k = 0; k < K; ++k)  // until SplitNode knows better: what it was split from
+      tissue.point_particles.push_back(point.parent < 0 ? -1 : tissue.point_particles[point.parent * K + k]);
+  }
+  tissue.point_volume[p] = point.volume;
+  tissue.point_rest[p] = point.centroid;
+  shape_->Gradients(point.cell, point.centroid, &tissue.point_gradients[static_cast<size_t>(p) * K]);
+}
+
+void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
+  const int K = tissue.support_size;
+  const Eigen::Vector3i c = grid_->NodeCoordinates(node);
+  struct Member {
+    int point, entry, root;
+  };
+  std::vector<Member> members;  // points in the support of the node, with the entry that is theirs for it
+  for (int k = 0; k < K; ++k) {
+    const Eigen::Vector3i cell = c - shape_->offset(k);
+    if ((cell.array() < 0).any() || (cell.array() >= grid_->cells().array()).any()) continue;
+    for (int p : points_->InCell(grid_->CellIndex(cell))) members.push_back({p, p * K + k, 0});
+  }
+  std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.point < b.point; });
+  for (size_t i = 0; i < members.size(); ++i) members[i].root = static_cast<int>(i);
+  auto find = [&](int i) {
+    while (members[i].root != i) i = members[i].root = members[members[i].root].root;
+    return i;
+  };
+  for (size_t i = 0; i < members.size(); ++i)
+    for (int q : points_->Neighbours(members[i].point)) {
+      const auto j = std::lower_bound(members.begin(), members.end(), q, [](const Member& m, int p) { return m.point < p; });
+      if (j == members.end() || j->point != q) continue;
+      const int a = find(static_cast<int>(i)), b = find(static_cast<int>(j - members.begin()));
+      members[std::max(a, b)].root = std::min(a, b);
+    }
+
+  std::map<int, double> volume;  // per group
+  for (size_t i = 0; i < members.size(); ++i) volume[find(static_cast<int>(i))] += tissue.point_volume[members[i].point];
+  std::map<int, int> heir;  // particle -> group that keeps it, the largest
+  for (const auto& [root, v] : volume) {
+    const int particle = tissue.point_particles[members[root].entry];
+    if (particle < 0) continue;
+    const auto [at, first] = heir.emplace(particle, root);
+    if (!first && v > volume[at->second]) at->second = root;
+  }
+  std::map<int, int> particle_of;
+  for (const auto& [root, v] : volume) {
+    const int old = tissue.point_particles[members[root].entry];
+    if (old >= 0 && heir[old] == root) {
+      particle_of[root] = old;
+      continue;
+    }
+    particle_of[root] = tissue.particle_count();
+    const Eigen::Vector3d X = grid_->NodePosition(node);
+    tissue.particle_rest.push_back(X);
+    tissue.particle_mass.push_back(0);
+    const double slack = 1e-9 * grid_->spacing().maxCoeff();
+    tissue.particle_fixed.push_back(std::any_of(fixed_.begin(), fixed_.end(), [&](const Box& box) {
+      return (X.array() >= box.min.array() - slack).all() && (X.array() <= box.max.array() + slack).all();
+    }));
+    source.push_back(old);
+  }
+  for (size_t i = 0; i < members.size(); ++i) {
+    int& particle = tissue.point_particles[members[i].entry];
+    const int now = particle_of[find(static_cast<int>(i))];
+    if (particle != now) relinked_.push_back(members[i].point);
+    particle = now;
+  }
+}
+
+void Twins::LumpMass(Tissue& tissue) const {
+  const int K = tissue.support_size;
+  tissue.particle_mass.assign(tissue.particle_rest.size(), 0);
+  for (int p = 0; p < tissue.point_count(); ++p)
+    for (int k = 0; k < K; ++k)
+      tissue.particle_mass[tissue.point_particles[p * K + k]] += density_ * tissue.point_volume[p] * shape_->centre_values()[k];
+}
+
+const std::vector<int>& Twins::Update(const std::vector<int>& changed_points, Tissue& tissue, std::vector<int>& source) {
+  relinked_ = changed_points;
+  source.clear();
+  std::vector<int> nodes;
+  for (int p : changed_points) {
+    FillPoint(p, tissue);
+    const Eigen::Vector3i cell = grid_->CellCoordinates(points_->points()[p].cell);
+    for (int k = 0; k < tissue.support_size; ++k) nodes.push_back(grid_->NodeIndex(cell + shape_->offset(k)));
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  for (int node : nodes) SplitNode(node, tissue, source);
+  LumpMass(tissue);
+  std::sort(relinked_.begin(), relinked_.end());
+  relinked_.erase(std::unique(relinked_.begin(), relinked_.end()), relinked_.end());
+  ++tissue.version;
+  return relinked_;
+}
+
+}  // namespace meshless_cutting

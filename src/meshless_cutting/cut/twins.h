@@ -1,0 +1,43 @@
+// Particles and their twins: which particle each integration point uses at each node of its support.
+#pragma once
+
+#include <vector>
+
+#include "cut/integration_points.h"
+#include "scene/scene.h"
+#include "tissue/shape_functions.h"
+#include "tissue/tissue.h"
+
+namespace meshless_cutting {
+
+/// An integration point sees a particle that it reaches through material inside the particle's support. Where the points in the
+/// support of a node fall apart into groups that share no material there, each group has a particle of its own at that node, a
+/// twin. So every point always has its full set, moment matrices never become singular, and a cut is a re-indexing.
+///
+/// Mass is lumped with the shape functions of the centre of a cell: the parts of a cut point add up to what the point gave to each
+/// particle, and a cut keeps mass, momentum and angular momentum to rounding.
+class Twins {
+ public:
+  /// Fills `tissue` at load.
+  Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points, double density_kg_m3,
+        const std::vector<Box>& fixed, Tissue& tissue);
+
+  /// Call after IntegrationPoints::Update with the points that it returned. New particles start as copies of what they were
+  /// split from: `source` gets one entry per new particle, the particle to copy. Returns the points whose links or shape
+  /// functions changed, sorted.
+  const std::vector<int>& Update(const std::vector<int>& changed_points, Tissue& tissue, std::vector<int>& source);
+
+ private:
+  void FillPoint(int p, Tissue& tissue) const;
+  void SplitNode(int node, Tissue& tissue, std::vector<int>& source);
+  void LumpMass(Tissue& tissue) const;
+
+  const BackgroundGrid* grid_;
+  const ShapeFunctions* shape_;
+  const IntegrationPoints* points_;
+  double density_;
+  std::vector<Box> fixed_;
+  std::vector<int> relinked_;
+};
+
+}  // namespace meshless_cutting

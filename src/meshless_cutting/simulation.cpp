@@ -1,0 +1,310 @@
+#include "simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "crossing/find_crossings.h"
+#include "cut/soft_body.h"
+#include "cut/stroke_log.h"
+#include "simulation_checks.h"
+
+namespace meshless_cutting {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Seconds since the last call, or since it was made.
+class Stopwatch {
+ public:
+  double Lap() {
+    const Clock::time_point now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+FilledLattice Fill(const Scene& scene) {
+  TriangleMesh mesh;
+  try {
+    mesh = ReadTriangleMesh(scene.object.mesh, scene.object.scale);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(SceneMessage(scene, "object.mesh", "", error.what()));
+  }
+  Eigen::Vector3d low = mesh.vertices[0], high = low;
+  for (const Eigen::Vector3d& X : mesh.vertices) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  const double extent = (high - low).maxCoeff();
+  auto too_large = [&](const char* key, double value) {
+    if (value > extent)
+      throw std::runtime_error(SceneMessage(scene, key, std::to_string(value),
+                                            "expected at most the extent of the object, " + std::to_string(extent) +
+                                                " m; check object.scale, or choose a smaller size"));
+  };
+  too_large("object.cell_size_m", scene.object.cell_size_m);
+  too_large("object.lattice_size_m", scene.object.lattice_size_m);
+  try {
+    return FillWithLattice(mesh, scene.object.lattice_size_m);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(SceneMessage(scene, "object.mesh", scene.object.mesh.string(), error.what()));
+  }
+}
+
+/// The part that a scene without tools does not have.
+struct Cutting {
+  struct ToolState {
+    Tool tool;
+    StrokeLog strokes;
+    BladeMotion motion;
+    FrameCut cut;
+  };
+  std::vector<ToolState> tools;
+  CrossingFinder finder;
+
+  Cutting(const Scene& scene, const SoftBody& body) : finder(body.lattice(), body.graph()) {
+    for (size_t i = 0; i < scene.tools.size(); ++i)
+      tools.push_back({Tool(scene.tools[i]), StrokeLog(static_cast<int>(i), scene.time_step_s), {}, {}});
+  }
+};
+
+DynamicsConfig MakeDynamicsConfig(const Scene& scene) {
+  return {scene.time_step_s, scene.object.material, scene.solver, scene.gravity_m_s2, scene.damping, scene.obstacles};
+}
+
+}  // namespace
+
+struct Simulation::Parts {
+  Parts(const Scene& s, const Progress& progress) : scene(s) {
+    auto report = [&](const char* stage, double share) {
+      if (progress) progress(stage, share);
+    };
+    report("filling the mesh with its lattice", 0);
+    FilledLattice filled = Fill(scene);
+    lattice = std::move(filled.lattice);
+    lattice_report = filled.report;
+    built.gravity = scene.gravity_m_s2.has_value();
+    built.damping = scene.damping.has_value();
+    built.fixed = !scene.object.fixed.empty();
+    built.obstacles = !scene.obstacles.empty();
+    built.tools = !scene.tools.empty();
+    report("placing integration points and particles", 0.6);
+    Build();
+    for (size_t i = 0; i < scene.object.fixed.size(); ++i) CheckFixed(i);
+    report("ready", 1);
+  }
+
+  void CheckFixed(size_t i) const {
+    const Box& box = scene.object.fixed[i];
+    const double slack = 1e-9 * body->grid().spacing().maxCoeff();
+    for (const Eigen::Vector3d& X : body->tissue().particle_rest)
+      if ((X.array() >= box.min.array() - slack).all() && (X.array() <= box.max.array() + slack).all()) return;
+    throw std::runtime_error(SceneMessage(scene, "object.fixed[" + std::to_string(i) + "]", "",
+                                          "holds no particle; expected a box in the object frame that reaches at least one "
+                                          "node of the background grid; enlarge it"));
+  }
+
+  /// Everything that changes while the simulation runs.
+  void Build() {
+    cutting.reset();
+    body = std::make_unique<SoftBody>(lattice, scene.object, built.tools);
+    dynamics = std::make_unique<Dynamics>(MakeDynamicsConfig(scene), body->tissue());
+    if (built.tools) cutting.emplace(scene, *body);
+    events.clear();
+    statistics = StepStatistics();
+    statistics.time_s = start_s;
+    Count();
+  }
+
+  void MoveTools(double t0_s, double t1_s);
+  void FindCrossings();
+  void Cut();
+  void Advance();
+  void Count();
+
+  Scene scene;
+  BuiltParts built;
+  Lattice lattice;
+  LatticeReport lattice_report;
+  double start_s = 0;
+
+  std::unique_ptr<SoftBody> body;
+  std::unique_ptr<Dynamics> dynamics;
+  std::optional<Cutting> cutting;
+  std::vector<CutEvent> events;
+  StepStatistics statistics;
+};
+
+// ---- One frame, in the order of the paper's section 2.3 -------------------------------------------------------------------
+
+void Simulation::Step() {
+  Parts& p = *parts_;
+  StepStatistics& s = p.statistics;
+  const double t0_s = p.start_s + static_cast<double>(s.step) * p.scene.time_step_s;
+  const double t1_s = p.start_s + static_cast<double>(s.step + 1) * p.scene.time_step_s;
+  Stopwatch watch;
+  p.events.clear();
+  s.move_tools_s = s.find_crossings_s = s.cut_s = 0;
+  if (p.cutting) {
+    p.MoveTools(t0_s, t1_s);  // 1. move the blades along the samples of this frame
+    s.move_tools_s = watch.Lap();
+    p.FindCrossings();        // 2. links that they cross while the object moves as it did last
+    s.find_crossings_s = watch.Lap();
+    p.Cut();                  // 3. graph, surface, integration points, twins, mapping
+    s.cut_s = watch.Lap();
+  }
+  p.body->BeginAdvance();
+  p.Advance();                // 4. elastic dynamics
+  s.advance_s = watch.Lap();
+  p.body->EndAdvance();       //    and the surface after it
+  s.map_surface_s = watch.Lap();
+  s.total_s = s.move_tools_s + s.find_crossings_s + s.cut_s + s.advance_s + s.map_surface_s;
+  ++s.step;
+  s.time_s = t1_s;
+  p.Count();
+}
+
+void Simulation::Parts::MoveTools(double t0_s, double t1_s) {
+  for (auto& state : cutting->tools) {
+    state.motion = state.tool.Move(t0_s, t1_s);
+    state.cut = FrameCut();
+    state.cut.active = !state.motion.empty();
+    state.cut.jumps = state.tool.jumps();
+  }
+}
+
+void Simulation::Parts::FindCrossings() {
+  for (auto& state : cutting->tools) state.cut.crossings = cutting->finder.Find(state.motion, body->motion());
+  body->CloseWindow();
+  // A link that several blades cross in this frame belongs to the first.
+  auto& tools = cutting->tools;
+  for (size_t i = 0; i < tools.size(); ++i)
+    for (size_t j = 0; j < tools.size(); ++j) {
+      if (i == j) continue;
+      auto& mine = tools[i].cut.crossings;
+      const auto& other = tools[j].cut.crossings;
+      mine.erase(std::remove_if(mine.begin(), mine.end(),
+                                [&](const Crossing& c) {
+                                  const auto at = std::lower_bound(
+                                      other.begin(), other.end(), c.cut.link,
+                                      [](const Crossing& o, int link) { return o.cut.link < link; });
+                                  if (at == other.end() || at->cut.link != c.cut.link) return false;
+                                  return at->t < c.t || (at->t == c.t && j < i);
+                                }),
+                 mine.end());
+    }
+}
+
+void Simulation::Parts::Cut() {
+  std::vector<LinkCut> cuts;
+  for (const auto& state : cutting->tools)
+    for (const Crossing& crossing : state.cut.crossings) cuts.push_back(crossing.cut);
+  const size_t fragments_before = body->surface().fragment_volume_m3.size();
+  if (!cuts.empty()) {
+    const double area_before = body->cut_surface().cut_area();
+    body->Cut(cuts);
+    dynamics->TissueChanged(body->tissue());
+    const double area = body->cut_surface().cut_area() - area_before;
+    for (auto& state : cutting->tools) {
+      state.cut.area_m2 = area * static_cast<double>(state.cut.crossings.size()) / static_cast<double>(cuts.size());
+      for (const Crossing& crossing : state.cut.crossings)
+        state.cut.rest_points.push_back(body->graph().CutPoint(crossing.cut.link));
+    }
+  }
+  for (auto& state : cutting->tools) state.strokes.Record(state.cut, events);
+  if (body->surface().fragment_volume_m3.size() > fragments_before) {
+    CutEvent event;
+    event.type = CutEventType::kSeparated;
+    for (const CutEvent& cause : events)
+      if (cause.links_cut > 0 && event.tool < 0) {
+        event.tool = cause.tool;
+        event.stroke = cause.stroke;
+      }
+    event.fragment_volume_m3 = body->surface().fragment_volume_m3;
+    events.push_back(event);
+  }
+}
+
+void Simulation::Parts::Advance() {
+  const AdvanceResult result = dynamics->Advance(body->tissue(), body->mapping().links(), body->mutable_state());
+  statistics.status = result.status;
+  statistics.newton_iterations = result.newton_iterations;
+  statistics.linear_iterations = result.linear_iterations;
+  statistics.relative_residual = result.relative_residual;
+  statistics.contacts = result.contacts;
+  statistics.kinetic_j = result.kinetic_j;
+  statistics.elastic_j = result.elastic_j;
+  statistics.gravity_j = result.gravity_j;
+}
+
+void Simulation::Parts::Count() {
+  statistics.particles = body->tissue().particle_count();
+  statistics.integration_points = body->tissue().point_count();
+  statistics.links = static_cast<int>(lattice.links.size());
+  statistics.links_cut = body->graph().cut_count();
+  statistics.vertices = static_cast<int>(body->surface().positions.size());
+  statistics.triangles = static_cast<int>(body->surface().triangles.size());
+  statistics.fragments = static_cast<int>(body->surface().fragment_volume_m3.size());
+}
+
+// ---- The rest of the interface -----------------------------------------------------------------------------------------------
+
+Simulation::Simulation(const Scene& scene, const Progress& progress) : parts_(std::make_unique<Parts>(scene, progress)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+
+void Simulation::Reset() {
+  parts_->start_s = 0;
+  parts_->Build();
+}
+
+SampleVerdict Simulation::AddToolSample(int tool, const ToolSample& sample) {
+  return parts_->cutting->tools.at(static_cast<size_t>(tool)).tool.Add(sample);
+}
+
+bool Simulation::SetToolEdge(int tool, const std::vector<Eigen::Vector3d>& points) {
+  return parts_->cutting->tools.at(static_cast<size_t>(tool)).tool.SetEdge(points);
+}
+
+void Simulation::StartAt(double time_s) { parts_->start_s = parts_->statistics.time_s = time_s; }
+
+const Surface& Simulation::surface() const { return parts_->body->surface(); }
+const std::vector<CutEvent>& Simulation::events() const { return parts_->events; }
+const StepStatistics& Simulation::statistics() const { return parts_->statistics; }
+const BuiltParts& Simulation::parts() const { return parts_->built; }
+const Scene& Simulation::scene() const { return parts_->scene; }
+const LatticeReport& Simulation::lattice_report() const { return parts_->lattice_report; }
+
+const Tool& Simulation::tool(int index) const { return parts_->cutting->tools.at(static_cast<size_t>(index)).tool; }
+
+std::vector<Eigen::Vector3d> Simulation::blade(int index) const {
+  const BladeMotion& motion = parts_->cutting->tools.at(static_cast<size_t>(index)).motion;
+  return motion.empty() ? std::vector<Eigen::Vector3d>() : motion.back().points_t1;
+}
+
+std::vector<Eigen::Vector3d> Simulation::IntegrationPointPositions() const {
+  const SoftBody& body = *parts_->body;
+  const size_t K = static_cast<size_t>(body.tissue().support_size);
+  std::vector<double> phi(K);
+  std::vector<Eigen::Vector3d> positions(body.points().points().size(), Eigen::Vector3d::Zero());
+  for (size_t p = 0; p < positions.size(); ++p) {
+    body.shape().Values(body.points().points()[p].cell, body.points().points()[p].centroid, phi.data());
+    for (size_t k = 0; k < K; ++k) positions[p] += phi[k] * body.state().position[body.tissue().point_particles[p * K + k]];
+  }
+  return positions;
+}
+
+std::vector<int> Simulation::MappedPoints() const {
+  std::vector<int> points;
+  for (int v = 0; v < parts_->body->mapping().size(); ++v) points.push_back(parts_->body->mapping().point(v));
+  return points;
+}
+
+std::string Simulation::CheckInvariants() const { return CheckBody(*parts_->body); }
+
+}  // namespace meshless_cutting

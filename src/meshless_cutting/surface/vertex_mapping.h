@@ -1,0 +1,65 @@
+// Mapping of vertices on the meshless tissue (paper section 2.2): one integration point per vertex, MLS weights of its particles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "cut/integration_points.h"
+#include "tissue/shape_functions.h"
+#include "tissue/tissue.h"
+
+namespace meshless_cutting {
+
+/// How often each criterion of section 2.2 ruled out a point that would otherwise have been chosen, since load.
+struct MappingStatistics {
+  std::uint64_t mapped = 0;          // choices made
+  std::uint64_t tangent_plane = 0;   // the nearest point lay above the tangent plane
+  std::uint64_t shared_particle = 0;  // the nearest point below it shared no particle with a neighbouring vertex
+  std::uint64_t relaxed = 0;         // no point met all criteria: the nearest that the graph connects was taken
+};
+
+/// Vertices that follow the tissue. Candidates are only points that the graph connects to the vertex, so a mapping across a
+/// cut is impossible whatever the criteria say.
+class VertexMapping {
+ public:
+  VertexMapping(const IntegrationPoints& points, const ShapeFunctions& shape, const Tissue& tissue);
+
+  /// Adds a vertex at rest position X (m, object frame) whose material belongs to lattice vertex `anchor`; not mapped yet.
+  void Add(const Eigen::Vector3d& X, int anchor);
+
+  /// Forgets the mapping of v, so that it puts no condition on its neighbours until it is mapped again.
+  void Unmap(int v) { point_[v] = -1; }
+
+  /// Maps vertex v on the nearest qualifying point. `normal`: outward surface normal at rest, zero inside the object.
+  /// `neighbours`: vertices that form a triangle with v; those not mapped yet put no condition.
+  void Map(int v, const Eigen::Vector3d& normal, const std::vector<int>& neighbours);
+
+  /// Maps vertex v on the point of the cell that it lies in, if the graph connects them, else on the nearest.
+  void MapInside(int v);
+
+  int size() const { return static_cast<int>(point_.size()); }
+  int point(int v) const { return point_[v]; }
+  int anchor(int v) const { return anchor_[v]; }
+  const Eigen::Vector3d& rest(int v) const { return rest_[v]; }
+  /// True when x_v is a convex combination of the particles: it stays within their bounding box.
+  bool convex(int v) const;
+  const SurfacePoints& links() const { return links_; }
+  const MappingStatistics& statistics() const { return statistics_; }
+
+  Eigen::Vector3d Position(int v, const std::vector<Eigen::Vector3d>& particles) const;
+
+ private:
+  bool SharesParticle(int p, int q) const;
+  void Assign(int v, int point);
+
+  const IntegrationPoints* points_;
+  const ShapeFunctions* shape_;
+  const Tissue* tissue_;
+  std::vector<Eigen::Vector3d> rest_;
+  std::vector<int> anchor_, point_;
+  SurfacePoints links_;
+  MappingStatistics statistics_;
+};
+
+}  // namespace meshless_cutting

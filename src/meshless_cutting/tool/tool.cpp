@@ -1,0 +1,83 @@
+#include "tool/tool.h"
+
+#include <algorithm>
+
+namespace meshless_cutting {
+
+Tool::Tool(const ToolConfig& config) : config_(config), edge_(config.cutting_edge), edge_next_(config.cutting_edge) {
+  if (const auto* fixed = std::get_if<FixedPoseSource>(&config_.pose_source)) T_WT_ = fixed->T_WT;
+}
+
+SampleVerdict Tool::Add(const ToolSample& sample) {
+  if (!std::isfinite(sample.time_s) || !sample.position_m.allFinite() || !sample.orientation_xyzw.allFinite())
+    return SampleVerdict::kNotFinite;
+  const double norm = sample.orientation_xyzw.norm();
+  if (!(norm > 1e-6)) return SampleVerdict::kZeroQuaternion;
+  if (newest_ && sample.time_s < newest_->time_s) return SampleVerdict::kBackInTime;
+  if (newest_ && sample.time_s == newest_->time_s) return SampleVerdict::kDuplicate;
+
+  Queued queued{sample.time_s, Eigen::Isometry3d::Identity(), false};
+  const Eigen::Vector4d q = sample.orientation_xyzw / norm;
+  queued.T_WT.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+  queued.T_WT.translation() = sample.position_m;
+  if (newest_) {
+    const double allowed = config_.max_speed_m_s * (queued.time_s - newest_->time_s);
+    for (const Eigen::Vector3d& p : edge_)
+      if ((queued.T_WT * p - newest_->T_WT * p).norm() > allowed) queued.jump = true;
+  }
+  newest_ = queued;
+  queue_.push_back(queued);
+  return queued.jump ? SampleVerdict::kJump : SampleVerdict::kAccepted;
+}
+
+std::vector<Eigen::Vector3d> Tool::BladeAt(const Eigen::Isometry3d& T_WT) const {
+  std::vector<Eigen::Vector3d> points(edge_.size());
+  std::transform(edge_.begin(), edge_.end(), points.begin(), [&](const Eigen::Vector3d& p) { return T_WT * p; });
+  return points;
+}
+
+BladeMotion Tool::Move(double t0_s, double t1_s) {
+  jumps_ = 0;
+  edge_ = edge_next_;
+  BladeMotion motion;
+  const bool fixed = std::holds_alternative<FixedPoseSource>(config_.pose_source);
+  double t = 0;
+  // Every sample is one corner of the blade's path; between corners all points move linearly.
+  auto extend = [&](double t_new, const std::vector<Eigen::Vector3d>& points) {
+    if (blade_) motion.push_back({t, t_new, *blade_, points});
+    blade_ = points;
+    t = t_new;
+  };
+  size_t used = 0;
+  for (; used < queue_.size() && queue_[used].time_s <= t1_s; ++used) {
+    const Queued& sample = queue_[used];
+    const bool stale = sample.time_s - last_sample_s_ > config_.timeout_s;
+    if (sample.jump) ++jumps_;
+    if (sample.jump || stale) blade_.reset();
+    const double at = std::clamp((sample.time_s - t0_s) / (t1_s - t0_s), t, 1.0);
+    if (blade_) {
+      extend(at, BladeAt(sample.T_WT));
+    } else {
+      blade_ = BladeAt(sample.T_WT);
+      t = at;
+    }
+    T_WT_ = sample.T_WT;
+    last_sample_s_ = sample.time_s;
+  }
+  queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(used));
+  if (!fixed && t1_s - last_sample_s_ > config_.timeout_s) blade_.reset();
+  if (fixed && !blade_) blade_ = BladeAt(*T_WT_);
+  // A blade that rests or waits for its next sample still cuts tissue that moves onto it.
+  if (blade_ && T_WT_ && t < 1) extend(1, BladeAt(*T_WT_));
+  return motion;
+}
+
+bool Tool::SetEdge(const std::vector<Eigen::Vector3d>& points) {
+  if (points.size() != edge_.size()) return false;
+  for (const Eigen::Vector3d& p : points)
+    if (!p.allFinite()) return false;
+  edge_next_ = points;
+  return true;
+}
+
+}  // namespace meshless_cutting
