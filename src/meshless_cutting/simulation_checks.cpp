@@ -90,7 +90,9 @@ std::string CheckPieces(const SoftBody& body) {
   for (double m : body.tissue().particle_mass) mass += m;
   for (size_t f = 0; f < surface_volume.size(); ++f)
     if (std::abs(surface_volume[f] - body.surface().fragment_volume_m3[f]) > 1e-9 * volume)
-      return At("volume inside the surface and of the points differ in fragment", f);
+      return At("volume inside the surface and of the points differ in fragment", f) + ": " +
+             std::to_string(surface_volume[f] / volume) + " and " +
+             std::to_string(body.surface().fragment_volume_m3[f] / volume) + " of the whole";
   const double enclosed = RestVolume(body.surface());
   if (std::abs(enclosed - volume) > 1e-9 * enclosed) return "the points do not add up to the enclosed volume";
   if (body.tissue().particle_mass.size() != body.state().position.size()) return "particles and state differ in number";

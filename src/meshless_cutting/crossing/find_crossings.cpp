@@ -110,8 +110,8 @@ const std::vector<Crossing>& CrossingFinder::Find(const BladeMotion& blade, cons
         box.min = box.min.cwiseMin(p);
         box.max = box.max.cwiseMax(p);
       }
-  // Interpolated vertices may leave the bounds of their particles by rounding.
-  const double slack = 1e-9 * (1 + box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff());
+  // Vertices may leave the bounds of their particles by rounding and by their offset.
+  const double slack = object.slack() + 1e-12 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
   box.min.array() -= slack;
   box.max.array() += slack;
   FindNearBlocks(box, object);

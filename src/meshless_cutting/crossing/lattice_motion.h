@@ -13,6 +13,10 @@ namespace meshless_cutting {
 /// Positions of the lattice vertices at the two ends of the window, scene frame. Vertices of the skin are the drawn ones; inside the
 /// object a vertex gets a position only when one is asked for. Windows of consecutive frames chain without a gap, also
 /// where a vertex was mapped anew: its window starts where it was published.
+///
+/// For the search alone every vertex stands off its place by a constant vector of its own, a millionth of the lattice size.
+/// A blade that runs exactly through vertices or along links, as one guided along the axes of a block does, then passes each vertex on one
+/// side instead of touching, and so cutting, all links around it.
 class LatticeMotion {
  public:
   LatticeMotion(const Lattice& lattice, const CutSurface& surface, const IntegrationPoints& points,
@@ -43,6 +47,8 @@ class LatticeMotion {
   int support_size() const { return tissue_->support_size; }
   /// True when the particles of the vertex's block do not bound it: a skin vertex, or one mapped from outside a cell.
   bool loose(int vertex) const { return surface_->VertexOf(vertex) >= 0 || !mapping_.convex(vertex); }
+  /// How far a vertex can be outside the bounds of its block, m.
+  double slack() const { return 4 * offset_size_; }
   const std::vector<Eigen::Vector3d>& particles_t0() const { return *particles_t0_; }
   const std::vector<Eigen::Vector3d>& particles_t1() const { return *particles_t1_; }
 
@@ -50,10 +56,12 @@ class LatticeMotion {
 
  private:
   void Link(int vertex);
+  Eigen::Vector3d Offset(int vertex) const;
 
   const Lattice* lattice_;
   const CutSurface* surface_;
   const Tissue* tissue_;
+  double offset_size_;  // m
   VertexMapping mapping_;  // all lattice vertices; those of the skin use it for their block alone
   std::vector<std::vector<int>> block_vertices_, block_neighbours_;
   std::vector<std::pair<int, Eigen::Vector3d>> kept_;       // sorted by vertex

@@ -85,17 +85,4 @@ void AddCellVolumes(const BackgroundGrid& grid, const Tetrahedron& x, std::vecto
   Split(grid, x, 0, cell, SignedVolume(x) < 0 ? -1 : 1, parts);
 }
 
-void MergeSlivers(const BackgroundGrid& grid, std::vector<CellVolume>& parts) {
-  const double sliver = 1e-9 * grid.spacing().prod();
-  const auto largest = std::max_element(parts.begin(), parts.end(),
-                                        [](const CellVolume& a, const CellVolume& b) { return a.volume < b.volume; });
-  for (auto& part : parts)
-    if (&part != &*largest && part.volume < sliver) {
-      largest->volume += part.volume;
-      largest->moment += part.moment;
-      part.volume = 0;
-    }
-  parts.erase(std::remove_if(parts.begin(), parts.end(), [](const CellVolume& p) { return p.volume == 0; }), parts.end());
-}
-
 }  // namespace meshless_cutting

@@ -20,8 +20,28 @@ struct CellVolume {
 /// are there. Exact to rounding.
 void AddCellVolumes(const BackgroundGrid& grid, const std::array<Eigen::Vector3d, 4>& x, std::vector<CellVolume>& parts);
 
-/// Moves parts below a share of 1e-9 of a cell (rounding at cell faces) to the largest part: nothing is lost, no sliver remains.
-/// The bound is absolute, so the parts of a part never reach a cell that the whole did not.
-void MergeSlivers(const BackgroundGrid& grid, std::vector<CellVolume>& parts);
+/// Parts of a cell below this share of its volume are rounding at cell faces.
+inline constexpr double kSliverShare = 1e-9;
+
+/// Moves the parts for which `drop(part)` holds to the largest other part: nothing is lost.
+template <typename Drop>
+void MergeParts(std::vector<CellVolume>& parts, const Drop& drop) {
+  size_t largest = 0;
+  for (size_t i = 1; i < parts.size(); ++i)
+    if (parts[i].volume > parts[largest].volume) largest = i;
+  size_t kept = 0;
+  CellVolume all = parts[largest];
+  for (size_t i = 0; i < parts.size(); ++i) {
+    if (i == largest) continue;
+    if (drop(parts[i])) {
+      all.volume += parts[i].volume;
+      all.moment += parts[i].moment;
+    } else {
+      parts[kept++] = parts[i];
+    }
+  }
+  parts.resize(kept);
+  parts.push_back(all);
+}
 
 }  // namespace meshless_cutting

@@ -123,10 +123,10 @@ void FaceTriangles(const Lattice& lattice, const MaterialGraph& graph, int face,
   }
 }
 
-void CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrahedron, const CapContext& context,
-                  std::vector<CornerTriangle>& triangles) {
+CapShape CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrahedron, const CapContext& context,
+                      std::vector<CornerTriangle>& triangles) {
   const TetrahedronPieces& pieces = PiecesOf(graph.CutMask(tetrahedron));
-  if (pieces.count == 1) return;
+  if (pieces.count == 1) return CapShape::kNone;
   const std::array<int, 4>& t = lattice.tetrahedra[tetrahedron];
   auto piece_of = [&](int vertex) { return pieces.piece[LocalIndex(t, vertex)]; };
 
@@ -181,7 +181,7 @@ void CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrah
     };
     if (edge_count == 3) {
       emit(0, 1, 2);
-      return;
+      return CapShape::kTriangle;
     }
     std::array<Eigen::Vector3d, 4> x;
     std::array<bool, 4> own;
@@ -202,12 +202,12 @@ void CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrah
     if (area02 >= area13 && area02 >= 0) {
       emit(0, 1, 2);
       emit(0, 2, 3);
-      return;
+      return CapShape::kDiagonal02;
     }
     if (area13 >= 0) {
       emit(1, 2, 3);
       emit(1, 3, 0);
-      return;
+      return CapShape::kDiagonal13;
     }
   }
 
@@ -225,6 +225,7 @@ void CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrah
       emit(e.from, e.to, e.from_other, e.to_other);
     }
   }
+  return CapShape::kFan;
 }
 
 Eigen::Vector3d RestPosition(const Lattice& lattice, const MaterialGraph& graph, const CutPoint& point) {

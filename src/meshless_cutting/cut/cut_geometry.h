@@ -56,8 +56,11 @@ struct CapContext {
   std::array<std::array<int, 3>, 4> face_groups{};  // per face: vertices of the face with equal numbers share a face point
 };
 
+/// How a cap is split into triangles.
+enum class CapShape { kNone, kTriangle, kDiagonal02, kDiagonal13, kFan };
+
 /// Triangles between the pieces of a tetrahedron, each drawn once from either side and closing the piece of its side.
-void CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrahedron, const CapContext& context,
+CapShape CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int tetrahedron, const CapContext& context,
                   std::vector<CornerTriangle>& triangles);
 
 /// Rest position of a corner, m, object frame.

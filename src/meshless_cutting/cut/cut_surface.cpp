@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 namespace meshless_cutting {
 namespace {
@@ -168,9 +169,9 @@ void CutSurface::DrawSkin(int face) {
                          static_cast<std::uint32_t>(Resolve(c[2]))});
 }
 
-void CutSurface::DrawCaps(int tetrahedron) {
+bool CutSurface::DrawCaps(int tetrahedron) {
   const unsigned mask = graph_->CutMask(tetrahedron);
-  if (PiecesOf(mask).count == 1) return;
+  if (PiecesOf(mask).count == 1) return false;
   if (cap_slot_[tetrahedron] < 0) {
     cap_slot_[tetrahedron] = static_cast<int>(caps_.size());
     caps_.emplace_back();
@@ -179,7 +180,7 @@ void CutSurface::DrawCaps(int tetrahedron) {
   if (slot.pieces_mask != mask) slot.centre.fill(-1);
   slot.pieces_mask = mask;
   std::vector<CornerTriangle> corners;
-  CapTriangles(*lattice_, *graph_, tetrahedron, ContextOf(tetrahedron), corners);
+  const CapShape shape = CapTriangles(*lattice_, *graph_, tetrahedron, ContextOf(tetrahedron), corners);
   slot.triangles.clear();
   double area = 0;
   for (const CornerTriangle& c : corners) {
@@ -191,6 +192,7 @@ void CutSurface::DrawCaps(int tetrahedron) {
   }
   cut_area_ += area - slot.area;
   slot.area = area;
+  return std::exchange(slot.shape, shape) != shape;
 }
 
 void CutSurface::Update(const std::vector<int>& links) {
@@ -222,7 +224,9 @@ void CutSurface::Update(const std::vector<int>& links) {
   for (int face : faces) UpdateFace(face);
   for (int face : faces)
     if (skin_slot_[face] >= 0) DrawSkin(face);
-  for (int t : tetrahedra) DrawCaps(t);
+  for (int t : tetrahedra)
+    if (DrawCaps(t)) changed_.push_back(t);
+  SortUnique(changed_);
 }
 
 void CutSurface::WriteTriangles(Surface& surface) const {

@@ -33,7 +33,7 @@ class CutSurface {
   const std::vector<SurfaceVertex>& vertices() const { return vertices_; }
   /// Surface vertex of a lattice vertex, -1 for one inside the object.
   int VertexOf(int lattice_vertex) const { return skin_vertex_[lattice_vertex]; }
-  /// Tetrahedra whose pieces the last Update() changed.
+  /// Tetrahedra whose pieces, or the shape of the faces between them, the last Update() changed. Sorted.
   const std::vector<int>& changed_tetrahedra() const { return changed_; }
   /// One lip of all cut faces, m^2, at rest.
   double cut_area() const { return cut_area_; }
@@ -56,6 +56,7 @@ class CutSurface {
   struct CapSlot {
     unsigned pieces_mask = 0;                       // cut mask when the centres were made
     std::array<int, 4> centre = {-1, -1, -1, -1};  // by piece
+    CapShape shape = CapShape::kNone;
     std::vector<Triangle> triangles;
     double area = 0;
   };
@@ -68,7 +69,7 @@ class CutSurface {
   int AddVertex(const Corner& corner);
   CapContext ContextOf(int tetrahedron) const;
   void DrawSkin(int face);
-  void DrawCaps(int tetrahedron);
+  bool DrawCaps(int tetrahedron);  // true when their shape is another
 
   const Lattice* lattice_;
   const MaterialGraph* graph_;

@@ -30,14 +30,18 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
       cells_(grid.cell_count()),
       vertex_points_(lattice.vertices.size()),
       root_(lattice.vertices.size(), -1) {
+  const double sliver = kSliverShare * grid.spacing().prod();
   std::vector<CellVolume> parts;
+  tetrahedron_cells_.offsets.push_back(0);
   for (size_t t = 0; t < lattice.tetrahedra.size(); ++t) {
     parts.clear();
     const std::array<int, 4>& v = lattice.tetrahedra[t];
     AddCellVolumes(grid, {lattice.vertices[v[0]], lattice.vertices[v[1]], lattice.vertices[v[2]], lattice.vertices[v[3]]},
                    parts);
-    MergeSlivers(grid, parts);
+    MergeParts(parts, [&](const CellVolume& part) { return part.volume < sliver; });
     AddChips(static_cast<int>(t), v[0], parts);
+    for (const CellVolume& part : parts) tetrahedron_cells_.items.push_back(part.cell);
+    tetrahedron_cells_.offsets.push_back(static_cast<int>(tetrahedron_cells_.items.size()));
   }
   for (int cell = 0; cell < grid.cell_count(); ++cell) Regroup(cell);
   for (IntegrationPoint& point : points_) point.parent = -1;
@@ -135,60 +139,66 @@ void IntegrationPoints::Relink(const std::vector<int>& points) {
   }
 }
 
+void IntegrationPoints::ClipPieces(const CutSurface& surface, int tetrahedron,
+                                   std::array<std::vector<CellVolume>, 4>& parts) const {
+  const std::array<int, 4>& v = lattice_->tetrahedra[tetrahedron];
+  const TetrahedronPieces& pieces = PiecesOf(graph_->CutMask(tetrahedron));
+  for (auto& p : parts) p.clear();
+  auto apex = [&](int piece) -> const Eigen::Vector3d& {
+    return lattice_->vertices[v[std::find(pieces.piece.begin(), pieces.piece.end(), piece) - pieces.piece.begin()]];
+  };
+  if (pieces.count == 1) {
+    AddCellVolumes(*grid_, {apex(0), lattice_->vertices[v[1]], lattice_->vertices[v[2]], lattice_->vertices[v[3]]}, parts[0]);
+  } else {
+    // Each piece as signed tetrahedra between one of its vertices and its closed boundary.
+    std::vector<CornerTriangle> triangles;
+    surface.PieceTriangles(tetrahedron, triangles);
+    for (const CornerTriangle& c : triangles) {
+      const int piece = pieces.piece[std::find(v.begin(), v.end(), c[0].side) - v.begin()];
+      std::array<Eigen::Vector3d, 4> x = {apex(piece)};
+      for (int i = 0; i < 3; ++i) x[i + 1] = RestPosition(*lattice_, *graph_, c[i].point);
+      if (x[1] != x[0] && x[2] != x[0] && x[3] != x[0]) AddCellVolumes(*grid_, x, parts[piece]);
+    }
+  }
+  // Each cell stays with at least one piece, the one with most material there.
+  const double sliver = kSliverShare * grid_->spacing().prod();
+  const int *begin = tetrahedron_cells_.begin(tetrahedron), *end = tetrahedron_cells_.end(tetrahedron);
+  std::array<std::vector<int>, 4> keep;
+  for (const int* cell = begin; cell != end; ++cell) {
+    int best = -1;
+    double most = 0;
+    for (int piece = 0; piece < pieces.count; ++piece)
+      for (const CellVolume& part : parts[piece])
+        if (part.cell == *cell && part.volume > most) best = piece, most = part.volume;
+    if (best >= 0) keep[best].push_back(*cell);
+  }
+  for (int piece = 0; piece < pieces.count; ++piece)
+    MergeParts(parts[piece], [&](const CellVolume& part) {
+      if (std::find(begin, end, part.cell) == end) return true;
+      return part.volume < sliver && std::find(keep[piece].begin(), keep[piece].end(), part.cell) == keep[piece].end();
+    });
+}
+
 const std::vector<int>& IntegrationPoints::Update(const CutSurface& surface, const std::vector<int>& tetrahedra) {
   changed_.clear();
-  // Cells that the tetrahedra have chips in: within their bounding boxes.
   std::vector<int> cells;
-  for (int t : tetrahedra) {
-    Eigen::Vector3d low = lattice_->vertices[lattice_->tetrahedra[t][0]], high = low;
-    for (int v : lattice_->tetrahedra[t]) {
-      low = low.cwiseMin(lattice_->vertices[v]);
-      high = high.cwiseMax(lattice_->vertices[v]);
-    }
-    const Eigen::Vector3d slack = 1e-6 * grid_->spacing();
-    const Eigen::Vector3i from = grid_->CellCoordinates(grid_->CellAt(low - slack));
-    const Eigen::Vector3i to = grid_->CellCoordinates(grid_->CellAt(high + slack));
-    for (int k = from[2]; k <= to[2]; ++k)
-      for (int j = from[1]; j <= to[1]; ++j)
-        for (int i = from[0]; i <= to[0]; ++i) cells.push_back(grid_->CellIndex({i, j, k}));
-  }
+  for (int t : tetrahedra) cells.insert(cells.end(), tetrahedron_cells_.begin(t), tetrahedron_cells_.end(t));
   SortUnique(cells);
-  auto is_changed = [&](const Chip& chip) { return std::binary_search(tetrahedra.begin(), tetrahedra.end(), chip.tetrahedron); };
-  cells.erase(std::remove_if(cells.begin(), cells.end(),
-                             [&](int cell) {
-                               std::vector<Chip>& chips = cells_[cell].chips;
-                               const auto end = std::remove_if(chips.begin(), chips.end(), is_changed);
-                               const bool untouched = end == chips.end();
-                               chips.erase(end, chips.end());
-                               return untouched;
-                             }),
-              cells.end());
-
-  std::vector<CornerTriangle> triangles;
-  std::vector<CellVolume> parts;
+  for (int cell : cells) {
+    std::vector<Chip>& chips = cells_[cell].chips;
+    chips.erase(std::remove_if(chips.begin(), chips.end(),
+                               [&](const Chip& chip) {
+                                 return std::binary_search(tetrahedra.begin(), tetrahedra.end(), chip.tetrahedron);
+                               }),
+                chips.end());
+  }
+  std::array<std::vector<CellVolume>, 4> parts;
   for (int t : tetrahedra) {
-    const std::array<int, 4>& v = lattice_->tetrahedra[t];
+    ClipPieces(surface, t, parts);
     const TetrahedronPieces& pieces = PiecesOf(graph_->CutMask(t));
-    if (pieces.count > 1) surface.PieceTriangles(t, triangles);
-    for (int piece = 0; piece < pieces.count; ++piece) {
-      const auto first = std::find(pieces.piece.begin(), pieces.piece.end(), piece) - pieces.piece.begin();
-      const Eigen::Vector3d& apex = lattice_->vertices[v[first]];
-      parts.clear();
-      if (pieces.count == 1) {
-        AddCellVolumes(*grid_, {apex, lattice_->vertices[v[1]], lattice_->vertices[v[2]], lattice_->vertices[v[3]]}, parts);
-      } else {
-        for (const CornerTriangle& c : triangles) {
-          if (pieces.piece[std::find(v.begin(), v.end(), c[0].side) - v.begin()] != piece) continue;
-          const Eigen::Vector3d a = RestPosition(*lattice_, *graph_, c[0].point);
-          const Eigen::Vector3d b = RestPosition(*lattice_, *graph_, c[1].point);
-          const Eigen::Vector3d d = RestPosition(*lattice_, *graph_, c[2].point);
-          if (a == apex || b == apex || d == apex) continue;
-          AddCellVolumes(*grid_, {apex, a, b, d}, parts);
-        }
-      }
-      MergeSlivers(*grid_, parts);
-      AddChips(t, v[first], parts);
-    }
+    for (int i = 0; i < 4; ++i)  // the first vertex of each piece is its anchor
+      if (std::find(pieces.piece.begin(), pieces.piece.begin() + i, pieces.piece[i]) == pieces.piece.begin() + i)
+        AddChips(t, lattice_->tetrahedra[t][i], parts[pieces.piece[i]]);
   }
   for (int cell : cells) Regroup(cell);
   SortUnique(changed_);

@@ -48,6 +48,8 @@ class IntegrationPoints {
     std::vector<Chip> chips;
     std::vector<int> points;
   };
+  /// Material of all pieces of a tetrahedron, by piece and cell. A cell that the uncut tetrahedron has material in keeps some.
+  void ClipPieces(const CutSurface& surface, int tetrahedron, std::array<std::vector<CellVolume>, 4>& parts) const;
   void AddChips(int tetrahedron, int anchor, const std::vector<CellVolume>& parts);
   void Regroup(int cell);
   void Relink(const std::vector<int>& points);
@@ -56,6 +58,7 @@ class IntegrationPoints {
   const MaterialGraph* graph_;
   const BackgroundGrid* grid_;
   std::vector<Cell> cells_;
+  Incidence tetrahedron_cells_;  // cells that each tetrahedron has material in; fixed at load, so groups only ever split
   std::vector<IntegrationPoint> points_;
   std::vector<std::vector<int>> vertex_points_;
   std::vector<std::vector<int>> neighbours_;

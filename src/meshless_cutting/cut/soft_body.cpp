@@ -60,7 +60,8 @@ SoftBody::SoftBody(const Lattice& lattice, const ObjectConfig& config, bool can_
   cut_surface_.WriteTriangles(surface_);
   MapSurface({}, 0, {});
   if (can_be_cut) motion_.emplace(lattice, cut_surface_, points_, shape_, tissue_);
-  BeginAdvance();
+  EndAdvance();    // positions of the surface as mapped,
+  BeginAdvance();  // where the first window starts
   EndAdvance();
 }
 

@@ -28,11 +28,11 @@ struct Lattice {
   std::vector<std::array<int, 2>> links;       // vertex pairs, first < second, sorted
   std::vector<std::array<int, 3>> faces;       // vertices, counter-clockwise seen from outside the first tetrahedron
   std::vector<std::array<int, 3>> face_links;  // link between face vertices (0,1), (1,2), (2,0)
-  std::vector<std::array<int, 2>> face_tetrahedra;   // second is -1 on the skin
+  std::vector<std::array<int, 2>> face_tetrahedra;    // second is -1 on the skin
   std::vector<std::array<int, 6>> tetrahedron_links;  // by kTetrahedronLinks
   std::vector<std::array<int, 4>> tetrahedron_faces;  // by kTetrahedronFaces
-  Incidence link_tetrahedra;                           // link -> tetrahedra around it
-  Incidence vertex_links;                              // vertex -> links at it
+  Incidence link_tetrahedra;                          // link -> tetrahedra around it
+  Incidence vertex_links;                             // vertex -> links at it
 };
 
 /// Derives links, faces and incidences from vertices and tetrahedra (positive volume, conforming).

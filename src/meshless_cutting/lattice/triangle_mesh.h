@@ -19,7 +19,8 @@ struct TriangleMesh {
 /// empty file, no triangle of non-zero area, non-finite vertex.
 TriangleMesh ReadTriangleMesh(const std::filesystem::path& file, double scale);
 
-/// Writes .obj, .ply or .stl by the extension of `file`. Throws std::runtime_error (unknown extension, path not writable).
+/// Writes .obj, .ply or .stl by the extension of `file`. Throws std::runtime_error (unknown extension, path not
+/// writable).
 void WriteTriangleMesh(const TriangleMesh& mesh, const std::filesystem::path& file);
 
 }  // namespace meshless_cutting

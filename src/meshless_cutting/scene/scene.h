@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -85,10 +86,20 @@ struct ToolConfig {
   double timeout_s = 0.1;      // no sample for this long: the blade is inactive
 };
 
+/// The file that a configuration was read from, for messages and for the record.
+struct SourceFile {
+  std::filesystem::path file;
+  std::string text;                  // as read
+  std::map<std::string, int> lines;  // line, from 1, of each key, e.g. "object.mesh" or "tools[0].name"
+};
+
+/// The one line that reports a value of a file: "file:line: key `key`: value: expected ...". A key that the file does not
+/// name is reported at the nearest section above it. Empty `value`: left out.
+std::string SceneMessage(const SourceFile& source, const std::string& key, const std::string& value,
+                         const std::string& expected);
+
 /// A whole scene. A part that is absent here is never built.
-struct Scene {
-  std::filesystem::path file;  // where it was read from, for messages
-  std::string text;            // the file as read, for the record
+struct Scene : SourceFile {
   std::string frame = "world";
   double time_step_s = 1.0 / 60;
   ObjectConfig object;

@@ -11,7 +11,7 @@
 // No std:: function is used but through Log and Sqrt, which whoever includes this provides for its T.
 
 template <class T>
-inline void Cofactor(const T* F, T* cof) {
+[[gnu::always_inline]] inline void Cofactor(const T* F, T* cof) {
   cof[0] = F[4] * F[8] - F[5] * F[7];
   cof[1] = F[5] * F[6] - F[3] * F[8];
   cof[2] = F[3] * F[7] - F[4] * F[6];
@@ -24,23 +24,23 @@ inline void Cofactor(const T* F, T* cof) {
 }
 
 template <class T>
-inline T Dot9(const T* a, const T* b) {
+[[gnu::always_inline]] inline T Dot9(const T* a, const T* b) {
   return ((a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])) +
          ((a[4] * b[4] + a[5] * b[5]) + (a[6] * b[6] + a[7] * b[7])) + a[8] * b[8];
 }
 
 /// y = F g.
 template <class T>
-inline void Times(const T* F, const T* g, T* y) {
+[[gnu::always_inline]] inline void Times(const T* F, const T* g, T* y) {
   for (int i = 0; i < 3; ++i) y[i] = F[3 * i] * g[0] + F[3 * i + 1] * g[1] + F[3 * i + 2] * g[2];
 }
 
 template <class T>
-inline T Smaller(const T& a, const T& b) {
+[[gnu::always_inline]] inline T Smaller(const T& a, const T& b) {
   return a < b ? a : b;
 }
 template <class T>
-inline T Larger(const T& a, const T& b) {
+[[gnu::always_inline]] inline T Larger(const T& a, const T& b) {
   return a < b ? b : a;
 }
 
@@ -52,7 +52,7 @@ struct NeoHookeanFamily {
   static constexpr int kTangentSize = 13;  // F, A, A2, B, B2
 
   template <class T>
-  T Stress(const T* F, T* P) const {
+  [[gnu::always_inline]] T Stress(const T* F, T* P) const {
     T cof[9], A, A2, B, B2;
     Cofactor(F, cof);
     const T I1 = Dot9(F, F);
@@ -63,7 +63,7 @@ struct NeoHookeanFamily {
   }
 
   template <class T>
-  void Linearise(const T* F, T* s, bool filtered) const {
+  [[gnu::always_inline]] void Linearise(const T* F, T* s, bool filtered) const {
     T cof[9], A, A2, B, B2;
     Cofactor(F, cof);
     const T I1 = Dot9(F, F);
@@ -88,7 +88,7 @@ struct NeoHookeanFamily {
   ///   (Cauchy interlacing), so that the sign of its determinant decides. It is a polynomial in the invariants.
   /// * Where it is negative, or J <= 0: |B| <= A / (2 sigma_max), because |K| <= 2 sigma_max (Gershgorin).
   template <class T>
-  static T FilteredB(const T& A, const T& B, const T& B2, const T& I1, const T& I2, const T& J) {
+  [[gnu::always_inline]] static T FilteredB(const T& A, const T& B, const T& B2, const T& I1, const T& I2, const T& J) {
     const T mean = I1 * (1.0 / 3);
     const T zero = J - J;
     const T variance = Larger((2.0 / 9) * (I1 * I1 - 3.0 * I2), zero);
@@ -101,7 +101,7 @@ struct NeoHookeanFamily {
   }
 
   template <class T>
-  void Differential(const T* s, const T* dF, T* dP) const {
+  [[gnu::always_inline]] void Differential(const T* s, const T* dF, T* dP) const {
     const T *F = s, &A = s[9], &A2 = s[10], &B = s[11], &B2 = s[12];
     T cof[9];
     Cofactor(F, cof);
@@ -119,7 +119,7 @@ struct NeoHookeanFamily {
   }
 
   template <class T>
-  void Block(const T* s, const T* g, const T* h, T* block) const {
+  [[gnu::always_inline]] void Block(const T* s, const T* g, const T* h, T* block) const {
     const T *F = s, &A = s[9], &A2 = s[10], &B = s[11], &B2 = s[12];
     T cof[9], Fg[3], Fh[3], cg[3], ch[3], w[3];
     Cofactor(F, cof);
@@ -154,7 +154,7 @@ struct StableNeoHookeanLaw : NeoHookeanFamily<StableNeoHookeanLaw> {
       : m(4.0 / 3 * mu), l(lambda + 5.0 / 6 * mu), a(1 + m / l - m / (4 * l)), shift(l * (1 - a)) {}
 
   template <class T>
-  void Coefficients(const T& I1, const T& J, T& A, T& A2, T& B, T& B2) const {
+  [[gnu::always_inline]] void Coefficients(const T& I1, const T& J, T& A, T& A2, T& B, T& B2) const {
     const T q = 1.0 / (I1 + 1.0);
     A = m - m * q;
     A2 = 2.0 * m * (q * q);
@@ -162,7 +162,7 @@ struct StableNeoHookeanLaw : NeoHookeanFamily<StableNeoHookeanLaw> {
     B2 = l + (J - J);
   }
   template <class T>
-  T Energy(const T& I1, const T& J) const {
+  [[gnu::always_inline]] T Energy(const T& I1, const T& J) const {
     const T j = J - 1.0;  // written about the rest state: no difference of large numbers there
     return 0.5 * m * ((I1 - 3.0) - Log(0.25 * (I1 + 1.0))) + j * (0.5 * l * j + shift);
   }
@@ -176,7 +176,7 @@ struct NeoHookeanLaw : NeoHookeanFamily<NeoHookeanLaw> {
   NeoHookeanLaw(double mu_, double lambda_) : mu(mu_), lambda(lambda_) {}
 
   template <class T>
-  void Coefficients(const T& I1, const T& J, T& A, T& A2, T& B, T& B2) const {
+  [[gnu::always_inline]] void Coefficients(const T& I1, const T& J, T& A, T& A2, T& B, T& B2) const {
     const T tiny = (J - J) + 1e-100;  // keeps the numbers finite; Energy() refuses the state
     const T safe = J > tiny ? J : tiny;
     const T q = 1.0 / safe;
@@ -187,7 +187,7 @@ struct NeoHookeanLaw : NeoHookeanFamily<NeoHookeanLaw> {
     B2 = (lambda + mu - lambda * log) * (q * q);
   }
   template <class T>
-  T Energy(const T& I1, const T& J) const {
+  [[gnu::always_inline]] T Energy(const T& I1, const T& J) const {
     const T zero = J - J;
     const T log = Log(J > zero ? J : zero + 1.0);
     const T energy = 0.5 * mu * (I1 - 3.0) + log * (0.5 * lambda * log - mu);
@@ -204,7 +204,7 @@ struct StVenantKirchhoffLaw {
   StVenantKirchhoffLaw(double mu_, double lambda_) : mu(mu_), lambda(lambda_) {}
 
   template <class T>
-  T SecondPiola(const T* F, T* S) const {
+  [[gnu::always_inline]] T SecondPiola(const T* F, T* S) const {
     T E[6];
     for (int a = 0; a < 3; ++a) E[a] = 0.5 * ((F[a] * F[a] + F[3 + a] * F[3 + a] + F[6 + a] * F[6 + a]) - 1.0);
     E[3] = 0.5 * (F[0] * F[1] + F[3] * F[4] + F[6] * F[7]);
@@ -218,7 +218,7 @@ struct StVenantKirchhoffLaw {
   }
 
   template <class T>
-  static void TimesSymmetric(const T* M, const T* S, T* P) {
+  [[gnu::always_inline]] static void TimesSymmetric(const T* M, const T* S, T* P) {
     for (int i = 0; i < 9; i += 3) {
       P[i] = M[i] * S[0] + M[i + 1] * S[3] + M[i + 2] * S[4];
       P[i + 1] = M[i] * S[3] + M[i + 1] * S[1] + M[i + 2] * S[5];
@@ -227,7 +227,7 @@ struct StVenantKirchhoffLaw {
   }
 
   template <class T>
-  T Stress(const T* F, T* P) const {
+  [[gnu::always_inline]] T Stress(const T* F, T* P) const {
     T S[6];
     const T energy = SecondPiola(F, S);
     TimesSymmetric(F, S, P);
@@ -235,7 +235,7 @@ struct StVenantKirchhoffLaw {
   }
 
   template <class T>
-  void Linearise(const T* F, T* s, bool filtered) const {
+  [[gnu::always_inline]] void Linearise(const T* F, T* s, bool filtered) const {
     for (int i = 0; i < 9; ++i) s[i] = F[i];
     T* S = s + 9;
     SecondPiola(F, S);
@@ -251,7 +251,7 @@ struct StVenantKirchhoffLaw {
   }
 
   template <class T>
-  void Differential(const T* s, const T* dF, T* dP) const {
+  [[gnu::always_inline]] void Differential(const T* s, const T* dF, T* dP) const {
     const T *F = s, *S = s + 9;
     T dE[6], dS[6], FdS[9];
     for (int a = 0; a < 3; ++a) dE[a] = F[a] * dF[a] + F[3 + a] * dF[3 + a] + F[6 + a] * dF[6 + a];
@@ -270,7 +270,7 @@ struct StVenantKirchhoffLaw {
   }
 
   template <class T>
-  void Block(const T* s, const T* g, const T* h, T* block) const {
+  [[gnu::always_inline]] void Block(const T* s, const T* g, const T* h, T* block) const {
     const T *F = s, *S = s + 9;
     T Fg[3], Fh[3], Sh[3];
     Times(F, g, Fg);
@@ -299,7 +299,7 @@ struct LinearLaw {
   LinearLaw(double mu_, double lambda_) : mu(mu_), lambda(lambda_) {}
 
   template <class T>
-  T Stress(const T* F, T* P) const {
+  [[gnu::always_inline]] T Stress(const T* F, T* P) const {
     T e[9];
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) e[3 * i + j] = 0.5 * (F[3 * i + j] + F[3 * j + i]) - (i == j ? 1.0 : 0.0);
@@ -310,11 +310,11 @@ struct LinearLaw {
     return 0.5 * lambda * trace * trace + mu * Dot9(e, e);
   }
   template <class T>
-  void Linearise(const T* F, T* s, bool) const {
+  [[gnu::always_inline]] void Linearise(const T* F, T* s, bool) const {
     s[0] = F[0] - F[0];
   }
   template <class T>
-  void Differential(const T*, const T* dF, T* dP) const {
+  [[gnu::always_inline]] void Differential(const T*, const T* dF, T* dP) const {
     const T trace = lambda * (dF[0] + dF[4] + dF[8]);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) dP[3 * i + j] = mu * (dF[3 * i + j] + dF[3 * j + i]);
@@ -322,7 +322,7 @@ struct LinearLaw {
     }
   }
   template <class T>
-  void Block(const T*, const T* g, const T* h, T* block) const {
+  [[gnu::always_inline]] void Block(const T*, const T* g, const T* h, T* block) const {
     const T gh = mu * (g[0] * h[0] + g[1] * h[1] + g[2] * h[2]);
     for (int i = 0; i < 3; ++i) {
       for (int l = 0; l < 3; ++l) block[3 * i + l] = lambda * g[i] * h[l] + mu * h[i] * g[l];

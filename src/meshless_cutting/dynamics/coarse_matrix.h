@@ -1,0 +1,44 @@
+// The tangent as the coarse space of affine fields per aggregate sees it.
+#pragma once
+
+#include <vector>
+
+#include "dynamics/aggregates.h"
+#include "dynamics/skyline_cholesky.h"
+
+namespace meshless_cutting {
+
+/// Unknown 12 a + 3 c + i is component i of function c of aggregate a. Two aggregates are coupled when an integration point has
+/// particles of both; the rows of different aggregates may be filled by different threads.
+class CoarseMatrix {
+ public:
+  static constexpr int kFunctions = 4;
+  static constexpr int kUnknowns = 12;  // per aggregate
+
+  const Aggregates& aggregates() const { return aggregates_; }
+  int size() const { return kUnknowns * aggregates_.count(); }
+
+  /// Aggregates, their coupling, and shape of the matrix. Allocates only to grow.
+  void TissueChanged(const Tissue& tissue, const std::vector<double>& free, int wanted_aggregates);
+
+  void Clear() { factor_.Reset(first_unknown_); }
+
+  /// The first aggregate that a is coupled to, <= a.
+  int first_coupled(int a) const { return first_[a]; }
+
+  /// Adds the 3 x 3 block (row by row) between function c of a and function d of b, b <= a, first_coupled(a) <= b. Of the blocks on
+  /// the diagonal the part above it is ignored.
+  void Add(int a, int c, int b, int d, const double* block);
+
+  void Factor() { factor_.Factor(); }
+
+  /// x := A^-1 x, after Factor().
+  void Solve(double* x) const { factor_.Solve(x); }
+
+ private:
+  Aggregates aggregates_;
+  std::vector<int> first_, first_unknown_;
+  SkylineCholesky factor_;
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,99 @@
+#include "dynamics/elastic_points.h"
+
+#include <algorithm>
+
+#include "dynamics/coarse_point.h"
+
+namespace meshless_cutting {
+
+ElasticPoints::ElasticPoints(const MaterialConfig& material, ThreadPool& pool)
+    : pool_(pool), lame_(LameConstantsOf(material)) {
+  for (int shape = 0; shape < kSupportShapes; ++shape) {
+    kernels_[shape] = SelectPointKernels(material.model, static_cast<SupportShape>(shape));
+  }
+}
+
+void ElasticPoints::TissueChanged(const Tissue& tissue) {
+  groups_.Build(tissue, lame_.mu);
+  particles_ = tissue.particle_count();
+  chunk_energy_.resize(groups_.chunks.size());
+  slots_.resize(std::size_t{2} * groups_.slot_count);  // the diagonal takes two
+}
+
+KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent) {
+  KernelArguments arguments;
+  arguments.group = &groups_.groups[chunk.group];
+  arguments.chunk = chunk;
+  arguments.lame = lame_;
+  arguments.field = field.data();
+  arguments.slots = slots_.data();
+  arguments.slot_count = groups_.slot_count;
+  // Only Linearise writes to it, and its caller's is not const.
+  if (tangent != nullptr) arguments.tangent = const_cast<double*>(tangent->groups[chunk.group].data());
+  return arguments;
+}
+
+double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(Arguments(groups_.chunks[c], x, nullptr));
+  });
+  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
+    const int end = std::min(particles_, (c + 1) * kParticlesPerChunk);
+    for (int j = c * kParticlesPerChunk; j < end; ++j) gradient[j] += GatherSlots(slots_.data(), groups_, j);
+  });
+  double energy = 0;
+  for (double e : chunk_energy_) energy += e;
+  return energy;
+}
+
+void ElasticPoints::Linearise(const Field& x, PointTangent& tangent) {
+  for (int g = 0; g < kSupportShapes; ++g) {
+    tangent.groups[g].resize(static_cast<std::size_t>(groups_.groups[g].batches) * kernels_[g].tangent_size * kLanes);
+  }
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
+                [&](int c) { kernels_[groups_.chunks[c].group].linearise(Arguments(groups_.chunks[c], x, &tangent)); });
+}
+
+void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
+                [&](int c) { kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent)); });
+  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
+    const int end = std::min(particles_, (c + 1) * kParticlesPerChunk);
+    for (int j = c * kParticlesPerChunk; j < end; ++j) q[j] += factor * GatherSlots(slots_.data(), groups_, j);
+  });
+}
+
+void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, BlockField& blocks) {
+  static const Field kNone;
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
+                [&](int c) { kernels_[groups_.chunks[c].group].diagonal(Arguments(groups_.chunks[c], kNone, &tangent)); });
+  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
+    const int end = std::min(particles_, (c + 1) * kParticlesPerChunk);
+    for (int j = c * kParticlesPerChunk; j < end; ++j) {
+      const Vector4 diagonal = GatherSlots(slots_.data(), groups_, j);
+      const Vector4 off_diagonal = GatherSlots(slots_.data() + groups_.slot_count, groups_, j);
+      blocks[j].xx += factor * diagonal.x;
+      blocks[j].yy += factor * diagonal.y;
+      blocks[j].zz += factor * diagonal.z;
+      blocks[j].xy += factor * off_diagonal.x;
+      blocks[j].xz += factor * off_diagonal.y;
+      blocks[j].yz += factor * off_diagonal.z;
+    }
+  });
+}
+
+void ElasticPoints::AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix) {
+  static const Field kNone;
+  for (const PointChunk& chunk : groups_.chunks) {
+    const PointGroup& group = groups_.groups[chunk.group];
+    const KernelArguments arguments = Arguments(chunk, kNone, &tangent);
+    for (int batch = chunk.begin; batch < chunk.end; ++batch) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (group.point[static_cast<std::size_t>(batch) * kLanes + lane] < 0) continue;
+        AddCoarseOfPoint(kernels_[chunk.group], arguments, batch, lane, factor, matrix);
+      }
+    }
+  }
+}
+
+}  // namespace meshless_cutting

@@ -1,0 +1,50 @@
+// All loops over integration points, in parallel: stress, tangent, products. Sums over the points of a particle are gathered
+// in a fixed order, so that the bits do not depend on the threads.
+#pragma once
+
+#include <vector>
+
+#include "dynamics/force_term.h"
+#include "dynamics/point_groups.h"
+#include "dynamics/point_kernels.h"
+#include "dynamics/thread_pool.h"
+
+namespace meshless_cutting {
+
+/// The tangent at some state, per group of points.
+struct PointTangent {
+  AlignedVector<double> groups[kSupportShapes];
+};
+
+class ElasticPoints {
+ public:
+  /// `pool` must outlive this.
+  ElasticPoints(const MaterialConfig& material, ThreadPool& pool);
+
+  void TissueChanged(const Tissue& tissue);
+
+  /// Strain energy and stabilisation, J; adds its gradient, N.
+  double Evaluate(const Field& x, Field& gradient);
+  void Linearise(const Field& x, PointTangent& tangent);
+  /// q += factor tangent p.
+  void AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q);
+  void AddDiagonal(const PointTangent& tangent, double factor, BlockField& blocks);
+
+  void AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix);
+
+  const PointGroups& groups() const { return groups_; }
+  const LameConstants& lame() const { return lame_; }
+
+ private:
+  KernelArguments Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent);
+
+  ThreadPool& pool_;
+  LameConstants lame_;
+  PointKernels kernels_[kSupportShapes];
+  PointGroups groups_;
+  std::vector<double> chunk_energy_;
+  Field slots_;
+  int particles_ = 0;
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,54 @@
+// The function whose minimum is the next step: inertia, and a list of force terms.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dynamics/force_term.h"
+#include "dynamics/thread_pool.h"
+
+namespace meshless_cutting {
+
+/// E(y) = sum_j inertia_j / 2 |y_j - target_j|^2 + sum of terms. Particles that are not free stay where they are: their rows
+/// of gradients and products are zero.
+class IncrementalPotential {
+ public:
+  /// `pool` and `terms` must outlive this.
+  IncrementalPotential(const std::vector<ForceTerm*>& terms, ThreadPool& pool) : terms_(terms), pool_(pool) {}
+
+  void Resize(int particles);
+
+  std::vector<double> inertia;  // kg/s^2 per particle
+  std::vector<double> free;     // 1: moves, 0: does not
+  Field target;                 // m
+
+  /// Norms of the gradient and of the terms' share in it, over the free particles; N.
+  struct Norms {
+    double residual = 0, terms = 0;
+  };
+
+  /// E(y), J; gradient, N. Infinite where a term is.
+  double Evaluate(const Field& y, Field& gradient, Norms& norms);
+
+  /// Fixes the tangent H at y, positive definite on the free particles.
+  void Linearise(const Field& y);
+
+  /// q = H p for p that is zero where not free; returns p . q.
+  double Product(const Field& p, Field& q);
+
+  /// The 3 x 3 blocks on the diagonal of H.
+  void Diagonal(BlockField& blocks);
+
+  /// Z^T H Z for the coarse space of `matrix`, replacing what it held.
+  void Coarse(CoarseMatrix& matrix);
+
+  int size() const { return static_cast<int>(target.size()); }
+  ThreadPool& pool() { return pool_; }
+
+ private:
+  const std::vector<ForceTerm*>& terms_;
+  ThreadPool& pool_;
+  std::vector<double> chunk_sums_[3];
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,99 @@
+// Eight numbers side by side, as the compiler's vector type: one register or several, as the instruction set has it. Included
+// inside a namespace of internal linkage.
+
+typedef double Lanes __attribute__((vector_size(8 * kLanes)));
+typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
+
+[[gnu::always_inline]] inline Lanes Load(const double* from) {
+  Lanes lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+[[gnu::always_inline]] inline void Store(const Lanes& lanes, double* to) { __builtin_memcpy(to, &lanes, sizeof(lanes)); }
+
+[[gnu::always_inline]] inline double Sum(const Lanes& a) { return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7])); }
+
+[[gnu::always_inline]] inline double Sqrt(double x) { return __builtin_sqrt(x); }
+[[gnu::always_inline]] inline double Log(double x) { return __builtin_log(x); }
+
+[[gnu::always_inline]] inline Lanes Sqrt(const Lanes& x) {
+#if defined(MESHLESS_CUTTING_LANES_AVX512)
+  return reinterpret_cast<Lanes>(_mm512_sqrt_pd(reinterpret_cast<__m512d>(x)));
+#else
+  Lanes root;
+  for (int l = 0; l < kLanes; ++l) root[l] = __builtin_sqrt(x[l]);
+  return root;
+#endif
+}
+
+/// Natural logarithm of positive normal numbers, below 1 ulp: the method and the constants of FDLIBM's e_log.c. Ours, so that
+/// all lanes are done at once and every C library gives the same bits.
+[[gnu::always_inline]] inline Lanes Log(const Lanes& x) {
+  // x = 2^k m, sqrt(1/2) <= m < sqrt(2). `biased` = k + 1023.
+  const LaneBits bits = reinterpret_cast<LaneBits>(x);
+  const LaneBits biased = (bits - 0x3fe6a09e667f3bcdULL + 0x3ff0000000000000ULL) >> 52;
+  const Lanes m = reinterpret_cast<Lanes>(bits - ((biased - 1023) << 52));
+  const Lanes k = reinterpret_cast<Lanes>(biased + 0x4330000000000000ULL) - (4503599627370496.0 + 1023.0);
+  const Lanes f = m - 1.0;
+  const Lanes s = f / (2.0 + f);
+  const Lanes z = s * s;
+  const Lanes r =
+      z * (6.666666666666735130e-01 +
+           z * (3.999999999940941908e-01 +
+                z * (2.857142874366239149e-01 +
+                     z * (2.222219843214978396e-01 +
+                          z * (1.818357216161805012e-01 + z * (1.531383769920937332e-01 + z * 1.479819860511658591e-01))))));
+  const Lanes half_square = 0.5 * (f * f);
+  return k * 6.93147180369123816490e-01 -
+         ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
+}
+
+/// The vectors of eight particles, one to a lane.
+[[gnu::always_inline]] inline void LoadParticles(const Vector4* field, const int* particle, Lanes* v) {
+#if defined(MESHLESS_CUTTING_LANES_AVX512)
+  // Lanes n and n + 4 share a register until they are transposed: xyz_ xyz_ -> x, y, z.
+  const auto pair = [&](int n) {
+    const __m512d low = _mm512_castpd256_pd512(_mm256_load_pd(&field[particle[n]].x));
+    return _mm512_insertf64x4(low, _mm256_load_pd(&field[particle[n + 4]].x), 1);
+  };
+  const __m512d a = pair(0), b = pair(1), c = pair(2), d = pair(3);
+  const __m512d xz_ab = _mm512_unpacklo_pd(a, b), y_ab = _mm512_unpackhi_pd(a, b);
+  const __m512d xz_cd = _mm512_unpacklo_pd(c, d), y_cd = _mm512_unpackhi_pd(c, d);
+  const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+  const __m512i second = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  v[0] = reinterpret_cast<Lanes>(_mm512_permutex2var_pd(xz_ab, first, xz_cd));
+  v[1] = reinterpret_cast<Lanes>(_mm512_permutex2var_pd(y_ab, first, y_cd));
+  v[2] = reinterpret_cast<Lanes>(_mm512_permutex2var_pd(xz_ab, second, xz_cd));
+#else
+  const Vector4 &a = field[particle[0]], &b = field[particle[1]], &c = field[particle[2]], &d = field[particle[3]];
+  const Vector4 &e = field[particle[4]], &f = field[particle[5]], &g = field[particle[6]], &h = field[particle[7]];
+  v[0] = Lanes{a.x, b.x, c.x, d.x, e.x, f.x, g.x, h.x};
+  v[1] = Lanes{a.y, b.y, c.y, d.y, e.y, f.y, g.y, h.y};
+  v[2] = Lanes{a.z, b.z, c.z, d.z, e.z, f.z, g.z, h.z};
+#endif
+}
+
+/// The reverse: adds lane l of v[0], v[1], v[2] to the vector at to[slot[l]]. Slots may coincide.
+[[gnu::always_inline]] inline void AddParticles(const Lanes* v, const int* slot, Vector4* to) {
+#if defined(MESHLESS_CUTTING_LANES_AVX512)
+  const __m512d x = reinterpret_cast<__m512d>(v[0]), y = reinterpret_cast<__m512d>(v[1]);
+  const __m512d z = reinterpret_cast<__m512d>(v[2]), zero = _mm512_setzero_pd();
+  const __m512d xy_even = _mm512_unpacklo_pd(x, y), xy_odd = _mm512_unpackhi_pd(x, y);
+  const __m512d z_even = _mm512_unpacklo_pd(z, zero), z_odd = _mm512_unpackhi_pd(z, zero);
+  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+  const __m512i high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+  const auto add = [&](const __m512d& two, int first, int second) {
+    double* a = &to[slot[first]].x;
+    _mm256_store_pd(a, _mm256_add_pd(_mm256_load_pd(a), _mm512_castpd512_pd256(two)));
+    double* b = &to[slot[second]].x;
+    _mm256_store_pd(b, _mm256_add_pd(_mm256_load_pd(b), _mm512_extractf64x4_pd(two, 1)));
+  };
+  add(_mm512_permutex2var_pd(xy_even, low, z_even), 0, 2);
+  add(_mm512_permutex2var_pd(xy_odd, low, z_odd), 1, 3);
+  add(_mm512_permutex2var_pd(xy_even, high, z_even), 4, 6);
+  add(_mm512_permutex2var_pd(xy_odd, high, z_odd), 5, 7);
+#else
+  // In the order of the above: where two slots coincide, the order of the sum matters to the last bit.
+  for (int l : {0, 2, 1, 3, 4, 6, 5, 7}) to[slot[l]] += Vector4{v[0][l], v[1][l], v[2][l], 0};
+#endif
+}

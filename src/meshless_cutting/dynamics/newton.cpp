@@ -1,0 +1,144 @@
+#include "dynamics/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meshless_cutting {
+namespace {
+
+/// Conjugate gradients stop at this share of the Newton residual: tighter buys nothing while the step is not yet linear.
+constexpr double kLinearTolerance = 0.05;
+constexpr int kLinearIterations = 200;
+
+/// A line search halves at most so often, and takes a step that gives this share of the promised descent.
+constexpr int kHalvings = 20;
+constexpr double kSufficientDescent = 1e-4;
+
+/// Where no way down is found, a residual below this is a matter of rounding, above it a failure.
+constexpr double kUsableResidual = 0.3;
+
+/// Differences of energies below this share of their size are rounding.
+constexpr double kEnergyRounding = 1e-13;
+
+}  // namespace
+
+void NewtonSolver::TissueChanged(const Tissue& tissue) {
+  const int particles = tissue.particle_count();
+  preconditioner_.TissueChanged(tissue, potential_);
+  for (Field* field : {&gradient_, &trial_, &trial_gradient_, &step_, &residual_, &scaled_, &direction_, &product_}) {
+    field->resize(particles);
+  }
+  chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
+}
+
+double NewtonSolver::Start(const Field& y) {
+  energy_ = potential_.Evaluate(y, gradient_, norms_);
+  if (!std::isfinite(energy_) || !std::isfinite(norms_.residual)) energy_ = std::numeric_limits<double>::infinity();
+  return energy_;
+}
+
+double NewtonSolver::Relative(double load) const {
+  const double scale = norms_.terms + load;
+  return scale > 0 ? norms_.residual / scale : 0;
+}
+
+int NewtonSolver::SolveLinear(double relative_tolerance) {
+  const int count = potential_.size();
+  ThreadPool& pool = potential_.pool();
+  const int chunks = ChunkCount(count, kParticlesPerChunk);
+  const auto for_each = [&](auto&& body) {
+    pool.ForEach(chunks, [&](int c) {
+      double sum = 0;
+      const int end = std::min(count, (c + 1) * kParticlesPerChunk);
+      for (int j = c * kParticlesPerChunk; j < end; ++j) body(j, sum);
+      chunk_sums_[c] = sum;
+    });
+    double sum = 0;
+    for (double s : chunk_sums_) sum += s;
+    return sum;
+  };
+
+  for_each([&](int j, double&) {
+    step_[j] = Vector4();
+    residual_[j] = -1.0 * gradient_[j];
+  });
+  double rz = preconditioner_.Apply(residual_, scaled_, pool);
+  for_each([&](int j, double&) { direction_[j] = scaled_[j]; });
+  const double stop = relative_tolerance * relative_tolerance * norms_.residual * norms_.residual;
+  double reached = norms_.residual * norms_.residual;
+  int iteration = 0;
+  while (iteration < kLinearIterations) {
+    const double curvature = potential_.Product(direction_, product_);
+    ++iteration;
+    if (!(curvature > 0) || !std::isfinite(rz)) {
+      // Rounding, or a tangent that is not quite definite: what has been gained so far is a direction of descent.
+      if (iteration == 1) for_each([&](int j, double&) { step_[j] = scaled_[j]; });
+      break;
+    }
+    const double alpha = rz / curvature;
+    const double rr = for_each([&](int j, double& sum) {
+      step_[j] += alpha * direction_[j];
+      residual_[j] = residual_[j] - alpha * product_[j];
+      sum += Dot(residual_[j], residual_[j]);
+    });
+    reached = rr;
+    if (rr <= stop) break;
+    const double next = preconditioner_.Apply(residual_, scaled_, pool);
+    const double beta = next / rz;
+    rz = next;
+    for_each([&](int j, double&) { direction_[j] = scaled_[j] + beta * direction_[j]; });
+  }
+  const double decades = 0.5 * std::log10(norms_.residual * norms_.residual / std::max(reached, 1e-300));
+  preconditioner_.ReportIterations(iteration / std::max(decades, 0.1));
+  return iteration;
+}
+
+NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
+  Result result;
+  if (!std::isfinite(energy_)) return result;
+  const int count = potential_.size();
+  for (;;) {
+    result.relative_residual = Relative(load);
+    if (result.relative_residual <= tolerance_) {
+      result.verdict = Verdict::kConverged;
+      return result;
+    }
+    if (result.newton_iterations == iterations_) {
+      result.verdict = Verdict::kNotConverged;
+      return result;
+    }
+    ++result.newton_iterations;
+    potential_.Linearise(y);
+    preconditioner_.Refresh(potential_);
+    result.linear_iterations += SolveLinear(std::max(kLinearTolerance, 0.5 * tolerance_ / result.relative_residual));
+
+    double slope = 0;
+    for (int j = 0; j < count; ++j) slope += Dot(gradient_[j], step_[j]);
+    bool accepted = false;
+    const IncrementalPotential::Norms old_norms = norms_;
+    if (slope < 0) {
+      double share = 1;
+      for (int halving = 0; halving <= kHalvings && !accepted; ++halving, share *= 0.5) {
+        for (int j = 0; j < count; ++j) trial_[j] = y[j] + share * step_[j];
+        const double energy = potential_.Evaluate(trial_, trial_gradient_, norms_);
+        if (!std::isfinite(energy) || !std::isfinite(norms_.residual)) continue;
+        const double rounding = kEnergyRounding * (std::abs(energy_) + std::abs(energy));
+        if (energy <= energy_ + kSufficientDescent * share * slope ||
+            (energy <= energy_ + rounding && norms_.residual < old_norms.residual)) {
+          accepted = true;
+          energy_ = energy;
+        }
+      }
+    }
+    if (!accepted) {
+      norms_ = old_norms;
+      result.verdict = result.relative_residual < kUsableResidual ? Verdict::kNotConverged : Verdict::kFailed;
+      return result;
+    }
+    y.swap(trial_);
+    gradient_.swap(trial_gradient_);
+  }
+}
+
+}  // namespace meshless_cutting

@@ -1,0 +1,53 @@
+// Newton's method with preconditioned conjugate gradients and a line search on the potential.
+#pragma once
+
+#include <cmath>
+
+#include "dynamics/incremental_potential.h"
+#include "dynamics/preconditioner.h"
+
+namespace meshless_cutting {
+
+class NewtonSolver {
+ public:
+  /// `potential` must outlive this.
+  NewtonSolver(IncrementalPotential& potential, double relative_tolerance, int iterations)
+      : potential_(potential), tolerance_(relative_tolerance), iterations_(iterations) {}
+
+  void TissueChanged(const Tissue& tissue);
+
+  enum class Verdict {
+    kConverged,
+    kNotConverged,  // iterations ran out; y is better than the start
+    kFailed,        // no finite energy at the start, or no way down from where the residual is still large
+  };
+  struct Result {
+    Verdict verdict = Verdict::kFailed;
+    int newton_iterations = 0, linear_iterations = 0;
+    double relative_residual = 0;
+  };
+
+  /// Minimises from y. The residual is measured against the forces in the object: the norm of the terms' gradient plus
+  /// `load`, N, below which nothing is worth moving.
+  Result Minimise(Field& y, double load);
+
+  /// Evaluates y as the start of Minimise, which then need not: energy, J, infinite if y is unusable.
+  double Start(const Field& y);
+  bool StartIsConverged(double load) const { return std::isfinite(energy_) && Relative(load) <= tolerance_; }
+
+ private:
+  double Relative(double load) const;
+  int SolveLinear(double relative_tolerance);
+
+  IncrementalPotential& potential_;
+  double tolerance_;
+  int iterations_;
+  Preconditioner preconditioner_;
+  Field gradient_, trial_, trial_gradient_;
+  Field step_, residual_, scaled_, direction_, product_;
+  std::vector<double> chunk_sums_;
+  IncrementalPotential::Norms norms_;
+  double energy_ = 0;
+};
+
+}  // namespace meshless_cutting

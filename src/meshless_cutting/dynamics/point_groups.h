@@ -1,0 +1,98 @@
+// The integration points as the loops over them want them: sorted by the shape of their support, eight side by side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dynamics/field.h"
+#include "tissue/tissue.h"
+
+namespace meshless_cutting {
+
+/// Points that one instruction works on. The last batch of a group is filled up with copies of a point that weigh nothing.
+constexpr int kLanes = 8;
+
+/// Batches that one task of a parallel loop takes: some microseconds of work, whose sums stay in the first level cache.
+constexpr int kBatchesPerChunk = 32;
+
+/// What a point's K particles look like at rest; each has its own loop.
+enum class SupportShape {
+  kBoxCentre,  // the corners of a box, gradients of the trilinear functions at its centre: a full cell
+  kBox,        // the corners of a box, any consistent gradients: a cell that is partly filled or cut
+  kGeneral,    // anything else
+};
+constexpr int kSupportShapes = 3;
+
+/// The modes that vanish for affine maps, in the order of PointGroup::hourglass.
+constexpr int kHourglassModes[4] = {3, 5, 6, 7};
+
+/// H_m(k): +-1, see PointGroup.
+inline double Hadamard(int mode, int corner) {
+  const int unset = mode & ~corner;
+  return ((unset ^ unset >> 1 ^ unset >> 2) & 1) ? -1 : 1;
+}
+
+/// Points of one shape. Arrays are indexed [batch][...][lane]; a lane is a point.
+///
+/// On the corners of a box any function is a sum of the 8 Hadamard modes H_m(k) = +-1: bit 0 of m and of k is x, bit 1 y,
+/// bit 2 z; H_1, H_2, H_4 are linear, H_3, H_5, H_6, H_7 ("hourglass") vanish for every affine map. Consistent gradients
+/// are g_k = sum_m c_m H_m(k) with c_0 = 0 and c_1, c_2, c_4 along the axes, so that 3 numbers, and 12 more off the centre, say all.
+struct PointGroup {
+  SupportShape shape = SupportShape::kGeneral;
+  int support = 8;  // K
+  int batches = 0;
+
+  std::vector<int> point;             // [batch][lane] index in Tissue; -1 in filling lanes
+  std::vector<int> particle;          // [batch][K][lane]; corners of a box in the order of their bits
+  std::vector<int> slot;              // [batch][K][lane]; where the sum for the particle is, see PointGroups
+  AlignedVector<double> volume;         // [batch][lane] V, m^3
+  AlignedVector<double> stabilisation;  // [batch][lane] S, N/m: energy S/2 sum_k |x_k - affine fit|^2
+
+  AlignedVector<double> box;        // boxes: [batch][3][lane] c_1x, c_2y, c_4z, 1/m
+  AlignedVector<double> hourglass;  // kBox: [batch][4][3][lane] c_3, c_5, c_6, c_7, 1/m
+  AlignedVector<double> gradient;   // kGeneral: [batch][K][3][lane] dphi_k/dX, 1/m
+  AlignedVector<double> fit;        // kGeneral: [batch][K][3][lane] affine fit: its gradient is sum_k x_k (x) fit_k, 1/m
+  AlignedVector<double> offset;     // kGeneral: [batch][K][3][lane] X_k less the mean of the K, m
+};
+
+/// A stretch of batches of one group: one task of a parallel loop. It sums what it has for a particle in a *slot* of its own, one
+/// per particle that it touches, [first_slot, last_slot).
+struct PointChunk {
+  int group, begin, end;  // batches
+  int first_slot, last_slot;
+};
+
+/// All points, neighbours close to each other, and the way of their sums to the particles: a loop over chunks leaves a
+/// Vector4 in every slot, a loop over particles gathers them. The order of all sums is fixed here.
+struct PointGroups {
+  PointGroup groups[kSupportShapes];
+  std::vector<PointChunk> chunks;
+  int slot_count = 0;  // size of a buffer of slots
+
+  // Particle j sums slots[slot_begin[j]] ... slots[slot_begin[j + 1] - 1], in this order.
+  std::vector<int> slot_begin;
+  std::vector<int> slots;
+
+  /// Rebuilds from `tissue`. `shear_modulus` mu in Pa: the stabilisation of a point is alpha mu V / (8 h^2) 8 / K with
+  /// alpha = 1 and h^2 = 4/3 of the mean square distance of the K rest positions from their mean (h of a cube of edge h).
+  /// Allocates only to grow. Points that were there before keep their order; a tissue with fewer points is a new one.
+  void Build(const Tissue& tissue, double shear_modulus);
+
+ private:
+  void SortNewPoints(const Tissue& tissue);
+  void BuildSlots(int particles);
+
+  std::vector<int> order_;               // points along a space-filling curve
+  std::vector<std::uint64_t> curve_;     // place of each point on it
+  std::vector<int> slot_of_, slot_particle_;
+};
+
+/// Sum of the slots of particle j.
+inline Vector4 GatherSlots(const Vector4* buffer, const PointGroups& groups, int j) {
+  Vector4 sum;
+  const int end = groups.slot_begin[j + 1];
+  for (int n = groups.slot_begin[j]; n < end; ++n) sum += buffer[groups.slots[n]];
+  return sum;
+}
+
+}  // namespace meshless_cutting

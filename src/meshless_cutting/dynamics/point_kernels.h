@@ -1,0 +1,52 @@
+// The loops over integration points, compiled for several instruction sets and chosen once when the program runs. All
+// give the same bits: the same operations in the same order, none of them fused.
+#pragma once
+
+#include "dynamics/field.h"
+#include "dynamics/point_groups.h"
+#include "scene/scene.h"
+#include "tissue/materials.h"
+
+namespace meshless_cutting {
+
+/// What a loop reads and writes. `tangent` belongs to the group, `slots` to all groups.
+struct KernelArguments {
+  const PointGroup* group = nullptr;
+  PointChunk chunk;
+  int slot_count = 0;  // size of a buffer of slots
+  LameConstants lame;
+  const Vector4* field = nullptr;  // per particle: positions, m, or a direction
+  double* tangent = nullptr;       // [batch][tangent_size][lane]
+  Vector4* slots = nullptr;        // buffer of slots
+};
+
+/// The loops for one material law and one shape of support.
+struct PointKernels {
+  int tangent_size;  // doubles per point
+
+  /// Energy of the points, J, strain and stabilisation; its gradient by each particle goes to the slots, N.
+  double (*evaluate)(const KernelArguments&);
+  /// The positive semidefinite tangent at `field`.
+  void (*linearise)(const KernelArguments&);
+  /// Tangent times direction into the slots, N.
+  void (*product)(const KernelArguments&);
+  /// The 3 x 3 blocks of the diagonal, N/m: two buffers' worth, first xx yy zz, then xy xz yz.
+  void (*diagonal)(const KernelArguments&);
+  /// All blocks g_a (d2Psi / dF_ia dF_lb) h_b of one point, times its volume, for `rows` vectors g and `columns` vectors h, three
+  /// numbers each: blocks[(r columns + c) 9], row by row.
+  void (*blocks)(const KernelArguments&, int batch, int lane, int rows, const double* g, int columns, const double* h,
+                 double* blocks);
+};
+
+/// The fastest that this processor can run.
+const PointKernels& SelectPointKernels(MaterialModel model, SupportShape shape);
+
+/// One instruction set's table, [model][shape].
+using PointKernelTable = PointKernels[4][kSupportShapes];
+extern const PointKernelTable kPointKernelsBaseline;
+#if defined(__x86_64__)
+extern const PointKernelTable kPointKernelsAvx2;
+extern const PointKernelTable kPointKernelsAvx512;
+#endif
+
+}  // namespace meshless_cutting

@@ -1,0 +1,295 @@
+// The loops over points, for Lanes of any instruction set. Included inside a namespace of internal linkage, after lanes.inl
+// and material_laws.inl.
+
+/// The corners of a box. Modes[m][i] = sum_k H_m(k) x_k,i by the fast Hadamard transform: 24 additions for eight sums.
+template <bool kCentre>
+struct BoxSupport {
+  static constexpr int kModes = 8;
+
+  BoxSupport(const PointGroup& group, int batch)
+      : particle(&group.particle[static_cast<std::size_t>(batch) * 8 * kLanes]),
+        slot(&group.slot[static_cast<std::size_t>(batch) * 8 * kLanes]),
+        box(&group.box[static_cast<std::size_t>(batch) * 3 * kLanes]),
+        hourglass(kCentre ? nullptr : &group.hourglass[static_cast<std::size_t>(batch) * 12 * kLanes]),
+        stiffness(Load(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
+
+  /// Modes of a field and its gradient F_ij = sum_k x_k,i g_k,j.
+  [[gnu::always_inline]] void Gradient(const Vector4* field, Lanes (*modes)[3], Lanes* F) const {
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; ++k) LoadParticles(field, particle + k * kLanes, modes[k]);
+#pragma GCC unroll 12
+    for (int n = 0; n < 12; ++n) {
+      const int k = kLow[n], bit = kBit[n];
+      for (int i = 0; i < 3; ++i) {
+        const Lanes low = modes[k][i], high = modes[k | bit][i];
+        modes[k][i] = low + high;
+        modes[k | bit][i] = high - low;
+      }
+    }
+    for (int j = 0; j < 3; ++j) {
+      const Lanes c = Load(box + j * kLanes);
+      for (int i = 0; i < 3; ++i) F[3 * i + j] = c * modes[1 << j][i];
+    }
+    if constexpr (!kCentre) {
+      for (int n = 0; n < 4; ++n) {
+        for (int j = 0; j < 3; ++j) {
+          const Lanes c = Load(hourglass + (3 * n + j) * kLanes);
+          for (int i = 0; i < 3; ++i) F[3 * i + j] += c * modes[kHourglassModes[n]][i];
+        }
+      }
+    }
+  }
+
+  /// S sum_k |x_k - affine fit|^2 = S/8 of the sum over the hourglass modes.
+  [[gnu::always_inline]] Lanes StabilisationEnergy(const Lanes (*modes)[3]) const {
+    Lanes sum = stiffness - stiffness;
+    for (int n : kHourglassModes) {
+      for (int i = 0; i < 3; ++i) sum += modes[n][i] * modes[n][i];
+    }
+    return (0.5 / 8) * stiffness * sum;
+  }
+
+  /// Adds to the slots the transpose: sum_j P_ij g_k,j plus the stabilisation of `modes`, which are overwritten. P times volume.
+  [[gnu::always_inline]] void Scatter(const Lanes* P, Lanes (*modes)[3], Vector4* slots) const {
+    const Lanes s = 0.125 * stiffness;
+    for (int n = 0; n < 4; ++n) {
+      for (int i = 0; i < 3; ++i) {
+        Lanes sum = s * modes[kHourglassModes[n]][i];
+        if constexpr (!kCentre) {
+          for (int j = 0; j < 3; ++j) sum += P[3 * i + j] * Load(hourglass + (3 * n + j) * kLanes);
+        }
+        modes[kHourglassModes[n]][i] = sum;
+      }
+    }
+    for (int j = 0; j < 3; ++j) {
+      const Lanes c = Load(box + j * kLanes);
+      for (int i = 0; i < 3; ++i) modes[1 << j][i] = c * P[3 * i + j];
+    }
+    for (int i = 0; i < 3; ++i) modes[0][i] = s - s;
+#pragma GCC unroll 12
+    for (int n = 0; n < 12; ++n) {
+      const int k = kLow[n], bit = kBit[n];
+      for (int i = 0; i < 3; ++i) {
+        const Lanes low = modes[k][i], high = modes[k | bit][i];
+        modes[k][i] = low - high;
+        modes[k | bit][i] = low + high;
+      }
+    }
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; ++k) {
+      AddParticles(modes[k], slot + k * kLanes, slots);
+    }
+  }
+
+  int count() const { return 8; }
+
+  [[gnu::always_inline]] void GradientOf(int k, Lanes* g) const {
+    for (int j = 0; j < 3; ++j) {
+      const Lanes c = Load(box + j * kLanes);
+      g[j] = k >> j & 1 ? c : -c;
+      if constexpr (!kCentre) {
+        for (int n = 0; n < 4; ++n) {
+          const Lanes h = Load(hourglass + (3 * n + j) * kLanes);
+          g[j] += Hadamard(kHourglassModes[n], k) * h;
+        }
+      }
+    }
+  }
+  /// Diagonal entry of the stabilisation, N/m.
+  [[gnu::always_inline]] Lanes StabilisationDiagonal(int) const { return 0.5 * stiffness; }
+
+  // The pairs (k, k | bit) of the fast transform.
+  static constexpr int kLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
+  static constexpr int kBit[12] = {1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4};
+  const int *particle, *slot;
+  const double *box, *hourglass;
+  Lanes stiffness;
+};
+
+/// Any K particles. Modes[k] = x_k less the affine fit to all of them.
+struct GeneralSupport {
+  static constexpr int kModes = 64;  // the most particles per point
+
+  GeneralSupport(const PointGroup& group, int batch)
+      : K(group.support),
+        particle(&group.particle[static_cast<std::size_t>(batch) * K * kLanes]),
+        slot(&group.slot[static_cast<std::size_t>(batch) * K * kLanes]),
+        gradient(&group.gradient[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
+        fit(&group.fit[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
+        offset(&group.offset[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
+        stiffness(Load(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
+
+  [[gnu::always_inline]] void Gradient(const Vector4* field, Lanes (*modes)[3], Lanes* F) const {
+    Lanes fitted[9], mean[3];
+    for (int i = 0; i < 9; ++i) F[i] = fitted[i] = stiffness - stiffness;
+    for (int i = 0; i < 3; ++i) mean[i] = stiffness - stiffness;
+    for (int k = 0; k < K; ++k) {
+      LoadParticles(field, particle + k * kLanes, modes[k]);
+      for (int i = 0; i < 3; ++i) mean[i] += modes[k][i];
+      for (int j = 0; j < 3; ++j) {
+        const Lanes g = Load(gradient + (3 * k + j) * kLanes), f = Load(fit + (3 * k + j) * kLanes);
+        for (int i = 0; i < 3; ++i) {
+          F[3 * i + j] += modes[k][i] * g;
+          fitted[3 * i + j] += modes[k][i] * f;
+        }
+      }
+    }
+    for (int i = 0; i < 3; ++i) mean[i] *= 1.0 / K;
+    for (int k = 0; k < K; ++k) {
+      Lanes d[3], affine[3];
+      for (int j = 0; j < 3; ++j) d[j] = Load(offset + (3 * k + j) * kLanes);
+      Times(fitted, d, affine);
+      for (int i = 0; i < 3; ++i) modes[k][i] = (modes[k][i] - mean[i]) - affine[i];
+    }
+  }
+
+  [[gnu::always_inline]] Lanes StabilisationEnergy(const Lanes (*modes)[3]) const {
+    Lanes sum = stiffness - stiffness;
+    for (int k = 0; k < K; ++k) {
+      for (int i = 0; i < 3; ++i) sum += modes[k][i] * modes[k][i];
+    }
+    return 0.5 * stiffness * sum;
+  }
+
+  [[gnu::always_inline]] void Scatter(const Lanes* P, Lanes (*modes)[3], Vector4* slots) const {
+    for (int k = 0; k < K; ++k) {
+      Lanes g[3], f[3];
+      for (int j = 0; j < 3; ++j) g[j] = Load(gradient + (3 * k + j) * kLanes);
+      Times(P, g, f);
+      for (int i = 0; i < 3; ++i) f[i] += stiffness * modes[k][i];
+      AddParticles(f, slot + k * kLanes, slots);
+    }
+  }
+
+  int count() const { return K; }
+  [[gnu::always_inline]] void GradientOf(int k, Lanes* g) const {
+    for (int j = 0; j < 3; ++j) g[j] = Load(gradient + (3 * k + j) * kLanes);
+  }
+  [[gnu::always_inline]] Lanes StabilisationDiagonal(int k) const {
+    Lanes share = (stiffness - stiffness) + (1.0 - 1.0 / K);
+    for (int j = 0; j < 3; ++j) share -= Load(offset + (3 * k + j) * kLanes) * Load(fit + (3 * k + j) * kLanes);
+    return share * stiffness;
+  }
+
+  int K;
+  const int *particle, *slot;
+  const double *gradient, *fit, *offset;
+  Lanes stiffness;
+};
+
+inline void ClearSlots(const KernelArguments& a, Vector4* slots) {
+  for (int slot = a.chunk.first_slot; slot < a.chunk.last_slot; ++slot) slots[slot] = Vector4();
+}
+[[gnu::always_inline]] inline Lanes VolumeOf(const KernelArguments& a, int batch) {
+  return Load(&a.group->volume[static_cast<std::size_t>(batch) * kLanes]);
+}
+
+template <class Law, class Support>
+double EvaluatePoints(const KernelArguments& a) {
+  ClearSlots(a, a.slots);
+  const Law law(a.lame.mu, a.lame.lambda);
+  Lanes energy = {};
+  for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
+    const Support support(*a.group, batch);
+    const Lanes volume = VolumeOf(a, batch);
+    Lanes modes[Support::kModes][3], F[9], P[9];
+    support.Gradient(a.field, modes, F);
+    energy += volume * law.Stress(F, P) + support.StabilisationEnergy(modes);
+    for (int i = 0; i < 9; ++i) P[i] *= volume;
+    support.Scatter(P, modes, a.slots);
+  }
+  return Sum(energy);
+}
+
+template <class Law, class Support>
+void LinearisePoints(const KernelArguments& a) {
+  const Law law(a.lame.mu, a.lame.lambda);
+  for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
+    const Support support(*a.group, batch);
+    Lanes modes[Support::kModes][3], F[9], tangent[Law::kTangentSize];
+    support.Gradient(a.field, modes, F);
+    law.Linearise(F, tangent, true);
+    double* to = a.tangent + static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
+    for (int i = 0; i < Law::kTangentSize; ++i) Store(tangent[i], to + i * kLanes);
+  }
+}
+
+template <class Law>
+[[gnu::always_inline]] inline void LoadTangent(const KernelArguments& a, int batch, Lanes* tangent) {
+  const double* from = a.tangent + static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
+  for (int i = 0; i < Law::kTangentSize; ++i) tangent[i] = Load(from + i * kLanes);
+}
+
+template <class Law, class Support>
+void ProductPoints(const KernelArguments& a) {
+  ClearSlots(a, a.slots);
+  const Law law(a.lame.mu, a.lame.lambda);
+  for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
+    const Support support(*a.group, batch);
+    const Lanes volume = VolumeOf(a, batch);
+    Lanes modes[Support::kModes][3], dF[9], dP[9], tangent[Law::kTangentSize];
+    support.Gradient(a.field, modes, dF);
+    LoadTangent<Law>(a, batch, tangent);
+    law.Differential(tangent, dF, dP);
+    for (int i = 0; i < 9; ++i) dP[i] *= volume;
+    support.Scatter(dP, modes, a.slots);
+  }
+}
+
+template <class Law, class Support>
+void DiagonalOfPoints(const KernelArguments& a) {
+  ClearSlots(a, a.slots);
+  ClearSlots(a, a.slots + a.slot_count);
+  const Law law(a.lame.mu, a.lame.lambda);
+  for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
+    const Support support(*a.group, batch);
+    const Lanes volume = VolumeOf(a, batch);
+    Lanes tangent[Law::kTangentSize];
+    LoadTangent<Law>(a, batch, tangent);
+    for (int k = 0; k < support.count(); ++k) {
+      Lanes g[3], block[9];
+      support.GradientOf(k, g);
+      law.Block(tangent, g, g, block);
+      const Lanes s = support.StabilisationDiagonal(k);
+      const Lanes diagonal[3] = {volume * block[0] + s, volume * block[4] + s, volume * block[8] + s};
+      const Lanes off_diagonal[3] = {volume * block[1], volume * block[2], volume * block[5]};
+      AddParticles(diagonal, support.slot + k * kLanes, a.slots);
+      AddParticles(off_diagonal, support.slot + k * kLanes, a.slots + a.slot_count);
+    }
+  }
+}
+
+template <class Law>
+void BlocksOfPoint(const KernelArguments& a, int batch, int lane, int rows, const double* g, int columns,
+                   const double* h, double* blocks) {
+  const Law law(a.lame.mu, a.lame.lambda);
+  double tangent[Law::kTangentSize];
+  for (int i = 0; i < Law::kTangentSize; ++i) {
+    tangent[i] = a.tangent[(static_cast<std::size_t>(batch) * Law::kTangentSize + i) * kLanes + lane];
+  }
+  const double volume = a.group->volume[static_cast<std::size_t>(batch) * kLanes + lane];
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c, blocks += 9) {
+      law.Block(tangent, g + 3 * r, h + 3 * c, blocks);
+      for (int i = 0; i < 9; ++i) blocks[i] *= volume;
+    }
+  }
+}
+
+template <class Law, class Support>
+constexpr PointKernels MakePointKernels() {
+  return {Law::kTangentSize,           EvaluatePoints<Law, Support>,   LinearisePoints<Law, Support>,
+          ProductPoints<Law, Support>, DiagonalOfPoints<Law, Support>, BlocksOfPoint<Law>};
+}
+
+// Rows in the order of MaterialModel, columns in that of SupportShape.
+#define MESHLESS_CUTTING_POINT_KERNEL_ROW(Law)                                              \
+  {                                                                                         \
+    MakePointKernels<Law, BoxSupport<true>>(), MakePointKernels<Law, BoxSupport<false>>(), \
+        MakePointKernels<Law, GeneralSupport>()                                             \
+  }
+#define MESHLESS_CUTTING_POINT_KERNEL_TABLE                                                                             \
+  {                                                                                                                     \
+    MESHLESS_CUTTING_POINT_KERNEL_ROW(StableNeoHookeanLaw), MESHLESS_CUTTING_POINT_KERNEL_ROW(NeoHookeanLaw),           \
+        MESHLESS_CUTTING_POINT_KERNEL_ROW(StVenantKirchhoffLaw), MESHLESS_CUTTING_POINT_KERNEL_ROW(LinearLaw)           \
+  }

@@ -1,0 +1,35 @@
+// An approximate inverse of the tangent: the 3 x 3 blocks of its diagonal, plus a coarse correction (additive two-level method).
+#pragma once
+
+#include "dynamics/coarse_matrix.h"
+#include "dynamics/incremental_potential.h"
+
+namespace meshless_cutting {
+
+/// B = D^-1 + Z A^-1 Z^T with A = Z^T H Z for an H that may be some steps old: B stays symmetric positive definite
+/// whatever A was made of, and a new A is made when the iterations show that the old one has aged.
+class Preconditioner {
+ public:
+  void TissueChanged(const Tissue& tissue, const IncrementalPotential& potential);
+
+  /// Takes the tangent that `potential` was linearised at last.
+  void Refresh(IncrementalPotential& potential);
+
+  /// z = B r, with z zero where particles are not free; returns r . z.
+  double Apply(const Field& r, Field& z, ThreadPool& pool);
+
+  /// How many iterations the last solve took, per factor 10 that it reduced the residual by.
+  void ReportIterations(double per_decade);
+
+ private:
+  void RefreshCoarse(IncrementalPotential& potential);
+
+  BlockField inverse_;
+  CoarseMatrix coarse_;
+  bool coarse_is_stale_ = true, coarse_is_new_ = false;
+  double iterations_when_new_ = 0;
+  std::vector<double> coarse_vector_;
+  std::vector<double> chunk_sums_;
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,19 @@
+#include "dynamics/time_scheme.h"
+
+namespace meshless_cutting {
+
+TimeScheme::TimeScheme(Integrator integrator, double time_step_s) : dt_(time_step_s) {
+  if (integrator == Integrator::kImplicitEuler) {
+    alpha_m_ = alpha_f_ = predict_ = 0;
+    beta_ = gamma_ = 1;
+    return;
+  }
+  constexpr double rho = kSpectralRadius;
+  alpha_m_ = (2 * rho - 1) / (rho + 1);
+  alpha_f_ = rho / (rho + 1);
+  beta_ = 0.25 * (1 - alpha_m_ + alpha_f_) * (1 - alpha_m_ + alpha_f_);
+  gamma_ = 0.5 - alpha_m_ + alpha_f_;
+  predict_ = 0.5 - beta_;
+}
+
+}  // namespace meshless_cutting

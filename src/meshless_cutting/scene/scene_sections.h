@@ -1,0 +1,29 @@
+// The sections of a scene file, one function each. Errors as in yaml_section.h.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/yaml_section.h"
+
+namespace meshless_cutting {
+
+/// Keys of `object`.
+std::vector<std::string> ObjectKeys();
+
+/// `object` but for its mesh, which needs the place of the scene file.
+ObjectConfig ReadObject(const YamlValue& value);
+ObstacleConfig ReadObstacle(const YamlValue& value);
+DampingConfig ReadDamping(const YamlValue& value);
+ToolConfig ReadTool(const YamlValue& value);
+SolverConfig ReadSolver(const YamlValue& value);
+
+/// A tf frame id: no leading slash, no space.
+std::string ReadFrameId(const YamlValue& value);
+/// {position_m: [x, y, z], orientation_xyzw: [x, y, z, w]}, each optional.
+Eigen::Isometry3d ReadPose(const YamlValue& value);
+/// {min: [x, y, z], max: [x, y, z]}, max above min on each axis. `more_keys` may stand beside them.
+Box ReadBox(const YamlValue& value, const std::vector<std::string>& more_keys = {});
+
+}  // namespace meshless_cutting

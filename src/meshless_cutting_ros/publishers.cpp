@@ -1,0 +1,109 @@
+#include "publishers.h"
+
+#include <chrono>
+#include <utility>
+
+#include "markers.h"
+#include "topics.h"
+
+namespace meshless_cutting {
+namespace {
+
+// A paused simulation is still drawn for an rviz that starts late.
+constexpr double kIdleMarkerPeriod = 1;  // s
+
+}  // namespace
+
+Publishers::Publishers(ros::NodeHandle nh, std::function<void()> every_second)
+    : topology_(nh.advertise<SurfaceTopology>(kTopologyTopic, 10, true)),
+      positions_(nh.advertise<SurfacePositions>(kPositionsTopic, 10)),
+      cut_events_(nh.advertise<CutEventMsg>(kCutEventsTopic, 1000)),
+      statistics_(nh.advertise<StepStatisticsMsg>(kStatisticsTopic, 100)),
+      session_(nh.advertise<SessionInfo>(kSessionTopic, 1, true)),
+      marker_(nh.advertise<visualization_msgs::Marker>(kMarkerTopic, 50)),
+      mapping_marker_(nh.advertise<visualization_msgs::MarkerArray>(kMappingMarkerTopic, 2)),
+      every_second_(std::move(every_second)),
+      thread_([this] { Run(); }) {}
+
+Publishers::~Publishers() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void Publishers::Push(FrameView view) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    queue_.push_back(std::move(view));
+  }
+  wake_.notify_all();
+}
+
+void Publishers::Run() {
+  ros::SteadyTime last_second = ros::SteadyTime::now();
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    wake_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stop_ || !queue_.empty(); });
+    if (stop_ && queue_.empty()) return;
+    std::deque<FrameView> views;
+    views.swap(queue_);
+    lock.unlock();
+    for (const FrameView& view : views) Publish(view);
+    if (!views.empty()) last_view_ = std::move(views.back());
+    PublishMarkers(!views.empty());
+    mapping_wanted_ = mapping_marker_.getNumSubscribers() > 0;
+    if ((ros::SteadyTime::now() - last_second).toSec() >= 1) {
+      last_second = ros::SteadyTime::now();
+      every_second_();
+    }
+    lock.lock();
+  }
+}
+
+void Publishers::Publish(const FrameView& view) {
+  const FrameMessages& messages = view.messages;
+  if (messages.session) {
+    session_.publish(messages.session);
+    clear_markers_ = true;
+  }
+  if (messages.topology) {
+    last_topology_ = messages.topology;
+    topology_.publish(messages.topology);
+  }
+  positions_.publish(messages.positions);
+  for (const CutEventMsgConstPtr& event : messages.events) cut_events_.publish(event);
+  if (messages.statistics) statistics_.publish(messages.statistics);
+}
+
+void Publishers::PublishMarkers(bool new_frame) {
+  if (!last_view_ || !last_topology_) return;
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const double period = new_frame ? 1 / kMarkerRateHz : kIdleMarkerPeriod;
+  if ((now - last_marker_).toSec() < period) return;
+  const Scene& scene = *last_view_->scene;
+  const SurfacePositions& positions = *last_view_->messages.positions;
+  if (mapping_marker_.getNumSubscribers() > 0 && last_view_->mapping) {
+    mapping_marker_.publish(MappingMarkers(*last_view_->mapping, positions));
+    last_marker_ = now;
+  }
+  if (marker_.getNumSubscribers() == 0) return;
+  last_marker_ = now;
+  const ros::Time stamp = positions.header.stamp;
+  if (clear_markers_) marker_.publish(ClearMarker(scene, stamp));
+  marker_.publish(SurfaceMarker(*last_topology_, positions));
+  if (!scene.object.fixed.empty()) {
+    const auto held = FixedMarker(scene, *last_topology_, positions);
+    if (!held.points.empty()) marker_.publish(held);
+  }
+  for (const auto& tool : ToolMarkers(scene, last_view_->tools, stamp)) marker_.publish(tool);
+  if (clear_markers_ || (now - last_surroundings_).toSec() >= 1) {
+    for (const auto& obstacle : ObstacleMarkers(scene, stamp)) marker_.publish(obstacle);
+    last_surroundings_ = now;
+  }
+  clear_markers_ = false;
+}
+
+}  // namespace meshless_cutting

@@ -1,0 +1,92 @@
+// A simulation with its number, its clock and the samples that wait: the one path of a frame, for the node, the nodelet
+// and `replay`. One thread owns it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "input_report.h"
+#include "message_conversions.h"
+#include "pose_sample.h"
+#include "session_clock.h"
+#include "simulation.h"
+
+namespace meshless_cutting {
+
+/// The messages of one frame. All but `positions` and `statistics` may be absent.
+struct FrameMessages {
+  SessionInfoConstPtr session;         // only at the start of a session
+  SurfaceTopologyConstPtr topology;    // when it changed, and once per simulated second
+  SurfacePositionsConstPtr positions;  // belongs to the last topology
+  std::vector<CutEventMsgConstPtr> events;
+  StepStatisticsMsgConstPtr statistics;  // absent before the first frame
+};
+
+/// A blade that bends: its polyline from a time on.
+struct EdgeSample {
+  std::int64_t stamp_ns = 0;
+  std::vector<Eigen::Vector3d> points;  // m, tool frame
+};
+
+using InputReports = std::vector<std::shared_ptr<InputReport>>;  // per tool
+
+class Session {
+ public:
+  enum class WallTimes { kInStatistics, kLeftOut };
+
+  /// Builds the simulation; throws as it does. `reports`, one per tool, take what is wrong with samples.
+  Session(const Scene& scene, std::uint32_t number, InputReports reports, WallTimes wall_times,
+          const Progress& progress = {});
+
+  /// The start of the session: info, topology and positions as loaded, stamped `stamp_ns`.
+  FrameMessages Begin(std::int64_t stamp_ns) const;
+
+  /// Queues a sample (scene frame, stamp not 0) for the frame of its stamp.
+  void Add(int tool, const PoseSample& sample);
+  void Add(int tool, EdgeSample sample);
+  /// Stamp of the earliest sample that waits.
+  std::optional<std::int64_t> EarliestWaiting() const;
+
+  bool started() const { return clock_.has_value(); }
+  /// Simulated time of the start of the first frame.
+  void Start(std::int64_t start_ns);
+  /// After a pause: the next frame covers the stamps from `now_ns` on, and the samples of the pause are forgotten.
+  void Resume(std::int64_t now_ns);
+  /// End of the stamps that the next frame covers when it is on time. Only when started.
+  std::int64_t NextInputEnd() const { return clock_->NextInputEnd(); }
+  /// One frame with the samples up to `input_end_ns`.
+  FrameMessages Step(std::int64_t input_end_ns);
+
+  /// Back to the start under a new number; waiting samples are forgotten.
+  void Reset(std::uint32_t number);
+
+  std::uint32_t number() const { return number_; }
+  const Simulation& simulation() const { return simulation_; }
+  const InputReports& reports() const { return reports_; }
+  /// Simulated time, ns; 0 before the start.
+  std::int64_t simulated_stamp() const { return clock_ ? clock_->SimulatedStamp() : 0; }
+  double slip_s() const { return clock_ ? clock_->slip_s() : 0; }
+  std::uint64_t step() const { return step_; }
+  /// Positions published since the session began that were not finite.
+  std::uint64_t not_finite() const { return not_finite_; }
+
+ private:
+  void HandOver(std::int64_t input_end_ns);
+
+  Simulation simulation_;
+  std::uint32_t number_;
+  InputReports reports_;
+  WallTimes wall_times_;
+  std::optional<SessionClock> clock_;
+  std::uint64_t step_ = 0;
+  std::uint64_t frames_per_topology_;  // a bag can be entered anywhere within a second
+  std::uint32_t published_version_ = 0;
+  std::uint64_t not_finite_ = 0;
+  std::vector<std::deque<PoseSample>> waiting_;        // per tool
+  std::vector<std::deque<EdgeSample>> waiting_edges_;  // per tool
+};
+
+}  // namespace meshless_cutting

@@ -1,0 +1,200 @@
+#include "simulator_ros.h"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <stdexcept>
+#include <utility>
+
+#include "scene_loading.h"
+#include "topics.h"
+
+namespace meshless_cutting {
+namespace {
+
+constexpr std::int64_t kLongestSleep_ns = 5000000;
+// Time that goes back by more starts a new session; a frame that is further behind starts at the present.
+constexpr std::int64_t kTimeJump_ns = 100000000;
+constexpr std::int64_t kLongestSlip_ns = 1000000000;
+
+std::int64_t ToNanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+}  // namespace
+
+SimulatorRos::SimulatorRos(const ros::NodeHandle& private_nh) : nh_(private_nh), input_nh_(private_nh) {
+  nh_.setCallbackQueue(&service_queue_);
+  input_nh_.setCallbackQueue(&input_queue_);
+  std::string scene;
+  if (!nh_.getParam(kSceneParameter, scene) || scene.empty()) {
+    throw std::runtime_error("parameter " + nh_.resolveName(kSceneParameter) +
+                             ": missing; expected the path or package:// URL of a scene file, e.g. "
+                             "_scene:=package://meshless_cutting/launch/liver.yaml");
+  }
+  paused_ = nh_.param<bool>(kStartPausedParameter, false);
+  paused_shown_ = paused_;
+  input_delay_ns_ = ToNanoseconds(nh_.param<double>(kInputDelayParameter, 0.003));
+  max_lag_ns_ = ToNanoseconds(nh_.param<double>(kMaxLagParameter, 0.05));
+  run_ = Load(scene, session_number_);
+  run_.inputs->set_check_age(!paused_);
+
+  updater_ = std::make_unique<diagnostic_updater::Updater>(ros::NodeHandle(), nh_, nh_.getNamespace());
+  updater_->setHardwareID("none");
+  updater_->add("loop", this, &SimulatorRos::DiagnoseLoop);
+  updater_->add("tools", this, &SimulatorRos::DiagnoseTools);
+  publishers_ = std::make_unique<Publishers>(nh_, [this] { EverySecond(); });
+  Advertise();
+  BeginSession();
+  loop_ = std::thread([this] { Loop(); });
+  input_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &input_queue_);
+  service_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &service_queue_);
+  input_spinner_->start();
+  service_spinner_->start();
+}
+
+SimulatorRos::~SimulatorRos() {
+  stop_ = true;  // a long ~step ends
+  command_wake_.notify_all();
+  services_.clear();
+  service_spinner_->stop();  // the loop still answers what was asked
+  {
+    const std::lock_guard<std::mutex> lock(command_mutex_);
+    commands_.emplace_back();  // empty: the loop's end
+  }
+  command_wake_.notify_all();
+  loop_.join();
+  input_spinner_->stop();
+  publishers_.reset();
+}
+
+SimulatorRos::Run SimulatorRos::Load(const std::string& scene, std::uint32_t number) const {
+  std::string robot_description;
+  nh_.getParam(kRobotDescriptionParameter, robot_description);
+  Run run;
+  run.scene = std::make_shared<const Scene>(LoadSceneFile(scene, robot_description));
+  InputReports reports;
+  for (const ToolConfig& tool : run.scene->tools) {
+    reports.push_back(std::make_shared<InputReport>(tool.name, SourceName(nh_, tool), tool.max_speed_m_s));
+  }
+  std::string told;
+  run.session = std::make_unique<Session>(*run.scene, number, reports, Session::WallTimes::kInStatistics,
+                                          [&](const std::string& stage, double) {
+                                            if (stage == told) return;
+                                            told = stage;
+                                            ROS_INFO("Loading %s: %s", run.scene->object.name.c_str(), stage.c_str());
+                                          });
+  run.inputs = std::make_unique<ToolInputs>(input_nh_, *run.scene, reports);
+  const Simulation& simulation = run.session->simulation();
+  ROS_INFO("Scene %s: object %s, %zu triangles, %d particles, %d integration points, %zu tools", scene.c_str(),
+           run.scene->object.name.c_str(), simulation.surface().triangles.size(), simulation.statistics().particles,
+           simulation.statistics().integration_points, run.scene->tools.size());
+  return run;
+}
+
+void SimulatorRos::InLoop(const std::function<void()>& command) {
+  std::promise<void> done;
+  {
+    const std::lock_guard<std::mutex> lock(command_mutex_);
+    commands_.emplace_back([&] {
+      command();
+      done.set_value();
+    });
+  }
+  command_wake_.notify_all();
+  done.get_future().wait();
+}
+
+void SimulatorRos::Loop() {
+  std::unique_lock<std::mutex> lock(command_mutex_);
+  while (true) {
+    while (!commands_.empty()) {
+      const std::function<void()> command = std::move(commands_.front());
+      commands_.pop_front();
+      if (!command) return;
+      lock.unlock();
+      command();
+      lock.lock();
+    }
+    std::int64_t sleep_ns = kLongestSleep_ns;
+    if (!paused_ && !stop_) {
+      lock.unlock();
+      sleep_ns = MakeFrameIfDue();
+      lock.lock();
+    }
+    if (sleep_ns > 0 && commands_.empty()) command_wake_.wait_for(lock, std::chrono::nanoseconds(sleep_ns));
+  }
+}
+
+std::int64_t SimulatorRos::MakeFrameIfDue() {
+  if (!clock_.valid()) return kLongestSleep_ns;
+  const std::int64_t now = clock_.Now();
+  if (now < last_now_ns_ - kTimeJump_ns) RestartSession("time went back");
+  last_now_ns_ = now;
+  Session& session = *run_.session;
+  if (!session.started()) session.Start(now);
+  const std::int64_t present = now - input_delay_ns_;
+  const std::int64_t lag = present - session.NextInputEnd();
+  if (lag < 0) return std::min(kLongestSleep_ns, -lag);
+  if (lag > kLongestSlip_ns) {
+    session.Resume(present);
+    return 0;
+  }
+  // Behind by a little: frames follow each other at once. By more: simulated time slips instead of bursting.
+  MakeFrame(lag > max_lag_ns_ ? present : session.NextInputEnd());
+  return 0;
+}
+
+FrameView SimulatorRos::View(FrameMessages messages) const {
+  const Simulation& simulation = run_.session->simulation();
+  FrameView view;
+  view.messages = std::move(messages);
+  view.scene = run_.scene;
+  for (int tool = 0; tool < static_cast<int>(run_.scene->tools.size()); ++tool) {
+    view.tools.push_back({simulation.tool(tool).pose(), simulation.blade(tool)});
+  }
+  if (publishers_->mapping_wanted()) view.mapping = {simulation.IntegrationPointPositions(), simulation.MappedPoints()};
+  return view;
+}
+
+void SimulatorRos::MakeFrame(std::int64_t input_end_ns) {
+  Session& session = *run_.session;
+  run_.inputs->HandOver(&session);
+  FrameMessages messages = session.Step(input_end_ns);
+  const StepStatistics& statistics = session.simulation().statistics();
+  monitor_.Add(1e-9 * static_cast<double>(ros::SteadyTime::now().toNSec()), statistics.total_s, run_.scene->time_step_s,
+               statistics.status);
+  slip_s_ = session.slip_s();
+  not_finite_ = session.not_finite();
+  publishers_->Push(View(std::move(messages)));
+}
+
+void SimulatorRos::BeginSession() { publishers_->Push(View(run_.session->Begin(clock_.valid() ? clock_.Now() : 0))); }
+
+void SimulatorRos::RestartSession(const std::string& reason) {
+  run_.session->Reset(++session_number_);
+  ROS_INFO("Session %u: %s", session_number_, reason.c_str());
+  monitor_.Restart();
+  BeginSession();
+}
+
+void SimulatorRos::SetPaused(bool paused) {
+  if (paused_ && !paused && clock_.valid()) {
+    last_now_ns_ = clock_.Now();
+    run_.inputs->HandOver(run_.session.get());
+    run_.session->Resume(last_now_ns_ - input_delay_ns_);
+  }
+  paused_ = paused;
+  paused_shown_ = paused;
+  run_.inputs->set_check_age(!paused);
+  monitor_.Restart();
+}
+
+std::uint32_t SimulatorRos::StepByHand(std::uint32_t frames) {
+  Session& session = *run_.session;
+  run_.inputs->HandOver(&session);
+  if (!session.started()) session.Start(session.EarliestWaiting().value_or(clock_.valid() ? clock_.Now() : 0));
+  std::uint32_t made = 0;
+  for (; made < frames && !stop_; ++made) MakeFrame(session.NextInputEnd());
+  return made;
+}
+
+}  // namespace meshless_cutting

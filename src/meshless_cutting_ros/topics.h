@@ -1,0 +1,39 @@
+// Names of topics, services and parameters, relative to the simulator's private namespace.
+#pragma once
+
+namespace meshless_cutting {
+
+// In, per tool: <tool>/measured_cp is named by the scene.
+inline constexpr char kEdgeTopic[] = "edge";  // <tool>/edge
+
+// Out.
+inline constexpr char kTopologyTopic[] = "surface/topology";
+inline constexpr char kPositionsTopic[] = "surface/positions";
+inline constexpr char kCutEventsTopic[] = "cut_events";
+inline constexpr char kStatisticsTopic[] = "statistics";
+inline constexpr char kSessionTopic[] = "session";
+inline constexpr char kMarkerTopic[] = "marker";
+inline constexpr char kMappingMarkerTopic[] = "mapping_marker";
+
+// Services.
+inline constexpr char kResetService[] = "reset";
+inline constexpr char kPauseService[] = "pause";
+inline constexpr char kStepService[] = "step";
+inline constexpr char kLoadSceneService[] = "load_scene";
+inline constexpr char kSaveSurfaceService[] = "save_surface";
+
+// Parameters.
+inline constexpr char kSceneParameter[] = "scene";               // path or package:// URL
+inline constexpr char kStartPausedParameter[] = "start_paused";  // bool, false
+inline constexpr char kInputDelayParameter[] = "input_delay_s";  // a frame waits this long for the last of its samples
+inline constexpr char kMaxLagParameter[] = "max_lag_s";          // further behind than this, simulated time slips
+inline constexpr char kRobotDescriptionParameter[] = "/robot_description";
+
+// What `replay` and the players call the simulator unless told otherwise.
+inline constexpr char kDefaultSimulatorName[] = "/simulator";
+
+// Samples of a tool that may wait in a queue: 20 s of a 1 kHz device.
+inline constexpr int kInputQueue = 20000;
+inline constexpr double kMarkerRateHz = 15;
+
+}  // namespace meshless_cutting

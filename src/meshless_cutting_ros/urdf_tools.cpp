@@ -1,0 +1,74 @@
+#include "urdf_tools.h"
+
+#include <urdf/model.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <stdexcept>
+
+namespace meshless_cutting {
+namespace {
+
+Eigen::Isometry3d ToIsometry(const urdf::Pose& pose) {
+  const auto& p = pose.position;
+  const auto& q = pose.rotation;
+  return Eigen::Translation3d(p.x, p.y, p.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+}
+
+std::vector<Eigen::Vector3d> EdgeOfChildren(const urdf::Model& model, const std::string& link) {
+  std::vector<Eigen::Vector3d> edge;
+  for (int i = 0;; ++i) {
+    const auto child = model.getLink(link + "_edge_" + std::to_string(i));
+    if (!child || !child->parent_joint || child->parent_joint->parent_link_name != link) return edge;
+    edge.push_back(ToIsometry(child->parent_joint->parent_to_joint_origin_transform).translation());
+  }
+}
+
+// Half of the longest centre line of a shape, in its own frame; zero when it has none.
+Eigen::Vector3d HalfLine(const urdf::GeometrySharedPtr& geometry) {
+  if (const auto box = std::dynamic_pointer_cast<urdf::Box>(geometry)) {
+    const Eigen::Vector3d size(box->dim.x, box->dim.y, box->dim.z);
+    int axis = 0;
+    size.maxCoeff(&axis);
+    return 0.5 * size[axis] * Eigen::Vector3d::Unit(axis);
+  }
+  if (const auto cylinder = std::dynamic_pointer_cast<urdf::Cylinder>(geometry)) {
+    return 0.5 * cylinder->length * Eigen::Vector3d::UnitZ();
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> EdgeOfLink(const std::string& urdf, const std::string& link) {
+  if (urdf.empty()) {
+    throw std::runtime_error(
+        "expected a robot description: set the parameter /robot_description (replay: --urdf FILE)");
+  }
+  urdf::Model model;
+  if (!model.initString(urdf))
+    throw std::runtime_error("expected a valid URDF in the robot description; see check_urdf");
+  const auto found = model.getLink(link);
+  if (!found)
+    throw std::runtime_error("expected the name of a link of the robot description `" + model.getName() + "`");
+  const std::vector<Eigen::Vector3d> edge = EdgeOfChildren(model, link);
+  if (edge.size() >= 2) return edge;
+
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();
+  Eigen::Isometry3d T_LS = Eigen::Isometry3d::Identity();
+  if (found->collision && found->collision->geometry) {
+    half = HalfLine(found->collision->geometry);
+    T_LS = ToIsometry(found->collision->origin);
+  }
+  if (half.isZero() && found->visual && found->visual->geometry) {
+    half = HalfLine(found->visual->geometry);
+    T_LS = ToIsometry(found->visual->origin);
+  }
+  if (half.isZero()) {
+    throw std::runtime_error("expected a link with children " + link + "_edge_0, " + link +
+                             "_edge_1, ..., or with a box or cylinder as collision or visual shape");
+  }
+  return {T_LS * -half, T_LS * half};
+}
+
+}  // namespace meshless_cutting
