@@ -64,9 +64,8 @@ def bump(x, centre, width):
 def liver_surface(sphere):
     """Maps the unit sphere (n, 3) onto the liver (n, 3), m.
 
-    The sphere's u = x runs from the right to the left lobe, v = y from the inferior margin to the back, and w = z from the
-    visceral to the diaphragmatic side: plan(u, v) is the outline seen from above, mid(u, v) the bent middle sheet, and
-    half(u, v) half of the thickness.
+    The sphere's u = x runs from the right to the left lobe, v = y from the inferior margin to the back, and w = z from
+    the visceral to the diaphragmatic side.
     """
     u, v, w = sphere.T
     left = smooth_step(u, -0.35, 0.95)  # 0 in the right lobe, 1 at the tip of the left
@@ -110,8 +109,8 @@ def liver_surface(sphere):
 
 def even_out(sphere, triangles, surface, rounds):
     """Moves the points over the sphere until the edges on `surface` are about equally long."""
-    edges = np.unique(np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1), axis=0)
-    i, j = edges.T
+    sides = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    i, j = np.unique(np.sort(sides, axis=1), axis=0).T
     for _ in range(rounds):
         p = surface(sphere)
         length = np.linalg.norm(p[i] - p[j], axis=1)  # a long edge pulls more

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kLongestDelay_ns = 20000000;
 constexpr std::int64_t kPause_ns = 100000000;  // the driver stopped: no period
-constexpr double kShareOfNew = 0.05;
+constexpr double kShareOfNew = 0.01;
 
 }  // namespace
 

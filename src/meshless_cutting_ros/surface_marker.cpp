@@ -12,7 +12,7 @@ namespace {
 using Color = Eigen::Vector3f;
 
 const Color kSkinColor(0.50f, 0.13f, 0.10f);     // capsule of a liver
-const Color kCutFaceColor(0.93f, 0.50f, 0.47f);  // fresh parenchyma
+const Color kCutFaceColor(0.98f, 0.55f, 0.52f);  // fresh parenchyma
 const Color kHeldColor(0.25f, 0.55f, 0.85f);
 
 Eigen::Vector3f Vertex(const std::vector<float>& xyz, std::size_t i) {
@@ -92,7 +92,7 @@ visualization_msgs::Marker SurfaceMarker(const SurfaceTopology& topology, const 
 visualization_msgs::Marker FixedMarker(const Scene& scene, const SurfaceTopology& topology,
                                        const SurfacePositions& positions) {
   visualization_msgs::Marker marker = NewMarker(positions, "held", visualization_msgs::Marker::SPHERE_LIST);
-  marker.scale.x = marker.scale.y = marker.scale.z = 0.3 * scene.object.lattice_size_m;
+  marker.scale.x = marker.scale.y = marker.scale.z = 0.4 * scene.object.lattice_size_m;
   marker.color = ToColor(kHeldColor);
   for (std::size_t v = 0; v < topology.rest_positions.size() / 3 && 3 * v + 2 < positions.positions.size(); ++v) {
     const Eigen::Array3d rest = Vertex(topology.rest_positions, v).cast<double>().array();

@@ -51,7 +51,7 @@ std::vector<visualization_msgs::Marker> ToolMarkers(const Scene& scene, const st
       body.mesh_resource = "package://meshless_cutting/meshes/scalpel.stl";
       body.pose = ToPose(*tools[i].T_WT);
       body.scale.x = body.scale.y = body.scale.z = config.cutting_edge.back().z() / kScalpelEdge;
-      SetColor(&body, 0.72f, 0.74f, 0.78f);
+      SetColor(&body, 0.93f, 0.94f, 0.96f);
       markers.push_back(body);
     }
     auto blade = NewMarker(scene, stamp, "blade", i, visualization_msgs::Marker::LINE_STRIP);
@@ -72,7 +72,7 @@ std::vector<visualization_msgs::Marker> ObstacleMarkers(const Scene& scene, ros:
   std::vector<visualization_msgs::Marker> markers;
   for (int i = 0; i < static_cast<int>(scene.obstacles.size()); ++i) {
     auto marker = NewMarker(scene, stamp, "obstacle", i, visualization_msgs::Marker::CUBE);
-    SetColor(&marker, 0.62f, 0.66f, 0.70f);
+    SetColor(&marker, 0.90f, 0.93f, 0.96f);
     if (const auto* plane = std::get_if<PlaneObstacle>(&scene.obstacles[i].shape)) {
       Eigen::Isometry3d T_WP = Eigen::Isometry3d::Identity();
       T_WP.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), plane->normal).toRotationMatrix();

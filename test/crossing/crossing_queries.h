@@ -1,8 +1,8 @@
 // Queries with known answers, and the file format that holds them.
 //
-// One query per line, '#' starts a comment, comma separated: 24 coordinates as C hex floats (a0 a1 b0 b1 at t = 0, then at
-// t = 1; a moves from a0 to a1 as blade edge, b as object edge), category, truth (0 or 1), touch_only, why, first contact
-// time (-1 if none), gap. touch_only and why are not read.
+// One query per line, '#' starts a comment, comma separated: 24 coordinates as C hex floats (a0 a1 b0 b1 at t = 0, then
+// at t = 1; a moves from a0 to a1 as blade edge, b as object edge), category, truth (0 or 1), touch_only, why, first
+// contact time (-1 if none), gap. touch_only and why are not read.
 #pragma once
 
 #include <string>

@@ -32,8 +32,8 @@ using Queries = std::map<std::string, std::vector<CrossingQuery>>;
 
 double Extent(const CrossingQuery& query) {
   double extent = 0;
-  for (const Eigen::Vector3d* point : {&query.a.q_t0, &query.b.p_t0, &query.b.q_t0, &query.a.p_t1, &query.a.q_t1,
-                                       &query.b.p_t1, &query.b.q_t1}) {
+  for (const Eigen::Vector3d* point :
+       {&query.a.q_t0, &query.b.p_t0, &query.b.q_t0, &query.a.p_t1, &query.a.q_t1, &query.b.p_t1, &query.b.q_t1}) {
     extent = std::max(extent, (*point - query.a.p_t0).cwiseAbs().maxCoeff());
   }
   return extent;

@@ -1,5 +1,5 @@
-// Time of the crossing test on the pairs that a broad phase leaves over, beside a plain double-precision solver (Provot 1997:
-// roots of the cubic, then the proportions at each) that promises nothing.
+// Time of the crossing test on the pairs that a broad phase leaves over, beside a plain double-precision solver (Provot
+// 1997: roots of the cubic, then the proportions at each) that promises nothing.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -71,7 +71,8 @@ std::optional<EdgeCrossing> PlainProvot(const MovingSegment& s, const MovingSegm
   return std::nullopt;
 }
 
-/// Edges of a deforming grid of spacing h and a blade edge of length 4 h that sweeps through: pairs with touching boxes.
+/// Edges of a deforming grid of spacing h and a blade edge of length 4 h that sweeps through: pairs with touching
+/// boxes.
 std::vector<CrossingQuery> MeshPairs() {
   constexpr double kSpacing = 0.02;
   constexpr size_t kPairs = 2000;

@@ -35,7 +35,8 @@ void ExpectSound(const CrossingQuery& query, const EdgeCrossing& crossing, doubl
     EXPECT_LE(x, 1);
   }
   const auto at = [&](const MovingSegment& s, double u) -> Eigen::Vector3d {
-    return (1 - u) * ((1 - crossing.t) * s.p_t0 + crossing.t * s.p_t1) + u * ((1 - crossing.t) * s.q_t0 + crossing.t * s.q_t1);
+    return (1 - u) * ((1 - crossing.t) * s.p_t0 + crossing.t * s.p_t1) +
+           u * ((1 - crossing.t) * s.q_t0 + crossing.t * s.q_t1);
   };
   double extent = 0;
   CrossingQuery copy = query;
@@ -119,7 +120,8 @@ TEST(FindFirstCrossing, AgreesWithKeptQueries) {
 }
 
 class RandomKind : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(All, RandomKind, ::testing::ValuesIn(RandomKinds()), [](const auto& kind) { return kind.param; });
+INSTANTIATE_TEST_SUITE_P(All, RandomKind, ::testing::ValuesIn(RandomKinds()),
+                         [](const auto& kind) { return kind.param; });
 
 TEST_P(RandomKind, AgreesWithTheReference) {
   constexpr int kQueries = 150;
@@ -183,9 +185,12 @@ TEST(FindFirstCrossing, DoesNotDependOnTheOrigin) {
   std::mt19937_64 random(23);
   for (int i = 0; i < 3000; ++i) {
     const CrossingQuery query = RandomQuery(i % 2 == 0 ? "integers_2" : "coplanar", random);
-    const auto moved = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p + Eigen::Vector3d(0x1p40, -0x1p30, 12345)); };
+    const auto moved = [](const Eigen::Vector3d& p) {
+      return Eigen::Vector3d(p + Eigen::Vector3d(0x1p40, -0x1p30, 12345));
+    };
     SCOPED_TRACE(ToLine(query));
-    ExpectSame(FindFirstCrossing(query.a, query.b), FindFirstCrossing(Changed(query.a, moved), Changed(query.b, moved)));
+    ExpectSame(FindFirstCrossing(query.a, query.b),
+               FindFirstCrossing(Changed(query.a, moved), Changed(query.b, moved)));
   }
 }
 

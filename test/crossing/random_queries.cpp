@@ -104,8 +104,8 @@ CrossingQuery EndTouch(Source& source) {
 CrossingQuery Tangent(Source& source) {
   CrossingQuery query = SmallIntegers(source, 20);
   const double touch = 0.25 * source.Integer(1, 3), scale = source.Integer(1, 9);
-  // a along x at height z(u, t), b along y at height 0: with a's ends at heights s (t - touch) and its mirror image, u moves
-  // with t as well, so that the height at the crossing is a square.
+  // a along x at height z(u, t), b along y at height 0: with a's ends at heights s (t - touch) and its mirror image, u
+  // moves with t as well, so that the height at the crossing is a square.
   query.a.p_t0 = Vector3d(-8 * touch, 0, 8 * scale * touch * touch);
   query.a.p_t1 = Vector3d(8 - 8 * touch, 0, 8 * scale * touch * (touch - 1));
   query.a.q_t0 = query.a.p_t0 + Vector3d(8, 0, -8 * scale * touch);
@@ -168,9 +168,9 @@ CrossingQuery Scaled(Source& source, std::mt19937_64& random) {
 }  // namespace
 
 const std::vector<std::string>& RandomKinds() {
-  static const std::vector<std::string> kinds = {"integers_1", "integers_2", "integers_50", "reals",
-                                                 "shared_corner", "coplanar", "collinear", "zero_length",
-                                                 "end_touch", "tangent", "near_parallel", "moving", "scaled"};
+  static const std::vector<std::string> kinds = {
+      "integers_1",  "integers_2", "integers_50", "reals",         "shared_corner", "coplanar", "collinear",
+      "zero_length", "end_touch",  "tangent",     "near_parallel", "moving",        "scaled"};
   return kinds;
 }
 

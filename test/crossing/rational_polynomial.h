@@ -75,7 +75,8 @@ class Polynomial {
   std::vector<Rational> c_;
 };
 
-/// The Sturm-Tarski query: the sum of the signs of g at the different roots of f in (lo, hi), neither of which is a root of f.
+/// The Sturm-Tarski query: the sum of the signs of g at the different roots of f in (lo, hi), neither of which is a
+/// root of f.
 class SturmSequence {
  public:
   SturmSequence(const Polynomial& f, const Polynomial& g) {

@@ -25,11 +25,11 @@ Vector Cross(const Vector& x, const Vector& y) {
 
 /// Everything that decides contact at one time; all of it is compared with 0.
 struct Conditions {
-  Polynomial coplanar;                                                   // det(a, b, c)
-  Polynomial nn, u_nn, rest_u_nn, v_nn, rest_v_nn;                       // for lines that meet in a point
+  Polynomial coplanar;                                                    // det(a, b, c)
+  Polynomial nn, u_nn, rest_u_nn, v_nn, rest_v_nn;                        // for lines that meet in a point
   Polynomial aa, a_offset, b0_on_a, b1_on_a, rest_b0_on_a, rest_b1_on_a;  // for parallels, a not a point
-  Polynomial bb, b_offset, a0_on_b, rest_a0_on_b;                        // a is a point
-  Polynomial cc;                                                         // both are
+  Polynomial bb, b_offset, a0_on_b, rest_a0_on_b;                         // a is a point
+  Polynomial cc;                                                          // both are
 
   Conditions(const MovingSegment& s, const MovingSegment& r) {
     const Vector A0 = Path(s.p_t0, s.p_t1), B0 = Path(r.p_t0, r.p_t1);
@@ -59,8 +59,8 @@ struct Conditions {
   /// Polynomials among whose roots (and t = 0) is the first contact.
   std::vector<Polynomial> Candidates() const {
     if (!coplanar.IsZero()) return {coplanar};
-    std::vector<Polynomial> all = {nn, u_nn, rest_u_nn, v_nn, rest_v_nn, aa, a_offset, b0_on_a, b1_on_a, rest_b0_on_a,
-                                   rest_b1_on_a, bb, b_offset, a0_on_b, rest_a0_on_b, cc};
+    std::vector<Polynomial> all = {nn,      u_nn,         rest_u_nn,    v_nn, rest_v_nn, aa,      a_offset,     b0_on_a,
+                                   b1_on_a, rest_b0_on_a, rest_b1_on_a, bb,   b_offset,  a0_on_b, rest_a0_on_b, cc};
     all.erase(std::remove_if(all.begin(), all.end(), [](const Polynomial& p) { return p.IsZero(); }), all.end());
     return all;
   }

@@ -8,14 +8,14 @@
 
 namespace meshless_cutting {
 
-/// The 0.1 x 0.04 x 0.04 m block, held at x <= 0.01 m, no gravity, with a straight blade of 0.08 m along y, the middle of its edge at the tool's origin.
+/// The 0.1 x 0.04 x 0.04 m block, held at x <= 0.01 m, 50 kPa, no gravity, with a straight blade of 0.08 m along y, the middle of its edge at the tool's origin.
 inline Scene BlockScene() {
   Scene scene;
   scene.object.name = "block";
   scene.object.mesh = MESHLESS_CUTTING_SOURCE_DIR "/meshes/block.obj";
   scene.object.cell_size_m = 0.01;
   scene.object.lattice_size_m = 0.005;
-  scene.object.material = {MaterialModel::kStableNeoHookean, 20000, 0.45, 1050};
+  scene.object.material = {MaterialModel::kStableNeoHookean, 50000, 0.45, 1050};
   scene.object.fixed = {{{-1, -1, -1}, {0.01, 1, 1}}};
   ToolConfig tool;
   tool.name = "blade";

@@ -1,24 +1,26 @@
 // Polynomials on t in [0, 1] as Bernstein coefficients in doubles, with bounds on what rounding did to them.
 //
-// Unit roundoff u = 2^-53: fl(x op y) = (x op y)(1 + d), |d| <= u, and |fl(x op y) - x op y| <= u |fl(x op y)|, unless a
-// product underflows, which then errs by at most 2^-1075. Terms of order u^2 are covered by rounding the sums of the
-// first-order constants up by more than 1 part in 100. All of this needs products and sums to be rounded apart: compile
-// with -ffp-contract=off (GCC otherwise fuses them where the machine can) and without -ffast-math.
+// Unit roundoff u = 2^-53, rounding to nearest: |fl(x op y) - (x op y)| <= u |x op y| and <= u |fl(x op y)|, unless a
+// product underflows. Bounds are sums of such terms; those of order u^2 are covered by rounding the sums of the
+// first-order constants up by more than 1 part in 100. A fused multiply-add leaves a rounding out and adds none, so
+// that the bounds hold with and without; still everything is compiled with -ffp-contract=off, for the same bits
+// everywhere.
 #pragma once
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace meshless_cutting {
 
-#ifdef __FAST_MATH__
-#error "The rounding bounds of the crossing test do not hold with -ffast-math"
+#if defined(__FAST_MATH__) || FLT_EVAL_METHOD != 0
+#error "The rounding bounds of the crossing test need IEEE doubles: no -ffast-math, no x87"
 #endif
 
 inline constexpr double kRoundoff = 0x1p-53;
 
-/// (1 - t) x + t y for t in [0, 1]. With m = max(|x|, |y|) it errs by at most 3 u m: 2 u m and u m for the weighted terms
-/// of total weight 1 (one of them is rounded twice), u m for the sum. Errors of x and y are not amplified.
+/// (1 - t) x + t y for t in [0, 1]. With m = max(|x|, |y|) it errs by at most 3 u m: 2 u m and u m for the weighted
+/// terms of total weight 1 (one of them is rounded twice), u m for the sum. Errors of x and y are not amplified.
 inline double Lerp(double x, double y, double t) { return (1 - t) * x + t * y; }
 
 /// Sign of a number known up to +-error; 0 if that leaves it open.
@@ -30,8 +32,8 @@ struct BoundedQuadratic {
   double error;
   double slope;
 
-  /// The polar form: Polar(t, t) is the value at t; Polar(s, s), Polar(s, t), Polar(t, t) are the coefficients on [s, t].
-  /// Evaluation adds at most 6 u max|c|.
+  /// The polar form: Polar(t, t) is the value at t; Polar(s, s), Polar(s, t), Polar(t, t) are the coefficients on [s,
+  /// t]. Evaluation adds at most 6 u max|c|.
   double Polar(double s, double t) const { return Lerp(Lerp(c0, c1, s), Lerp(c1, c2, s), t); }
 
   /// The sign if it is certainly the same on all of [s, t], else 0.
@@ -68,8 +70,8 @@ struct BoundedCubic {
   int Sign(double x) const { return CertainSign(x, error); }
 };
 
-/// The root x in (0, 1) of a cubic whose end coefficients have opposite signs, and the slope there: Newton's method kept
-/// inside the bracket. An estimate; nothing is certain about it.
+/// The root x in (0, 1) of a cubic whose end coefficients have opposite signs, and the slope there: Newton's method
+/// kept inside the bracket. An estimate; nothing is certain about it.
 inline double RootInside(const BoundedCubic& g, double& slope) {
   const double k1 = 3 * (g.c1 - g.c0), k2 = 3 * (g.c2 - 2 * g.c1 + g.c0), k3 = g.c3 - g.c0 + 3 * (g.c1 - g.c2);
   double lo = 0, hi = 1, x = g.c0 / (g.c0 - g.c3);

@@ -2,8 +2,8 @@
 //
 // Notation (a = blade edge A0 A1, b = object edge B0 B1; everything linear in t in [0, 1]):
 //   a = A1 - A0, b = B1 - B0, c = B0 - A0;  n = a x b, p = c x b, q = c x a  (quadratic);  f = n . c  (cubic).
-// The pair is coplanar where f = 0 (Provot 1997). Seen along axis k, p_k and p_k - n_k are on which sides of the line of b
-// the ends of a are, and q_k and q_k - n_k likewise for the ends of b and the line of a. Hence
+// The pair is coplanar where f = 0 (Provot 1997). Seen along axis k, p_k and p_k - n_k are on which sides of the line
+// of b the ends of a are, and q_k and q_k - n_k likewise for the ends of b and the line of a. Hence
 //   * if one pair has one strict sign, the segments do not touch, coplanar or not (their shadows do not touch);
 //   * if f = 0 and both pairs have opposite strict signs, the segments cross, at u = p_k / n_k and v = q_k / n_k.
 #pragma once
@@ -66,10 +66,13 @@ class CrossingFilter {
     return s0 == 0 && s1 == 0 && s2 == 0 && s3 == 0 ? Shape::kUnknown : Shape::kOther;
   }
 
+  static constexpr int kMaxCuts = 4;  // of one part
+
   /// Splits [0, 1] until each part has no root, one root, or no contact; parts are looked at in order of time.
   Verdict Search(EdgeCrossing& crossing) {
     constexpr int kMaxParts = 24;  // then it is left to the next stage, which costs more than these but ends
-    std::array<double, 2 * kMaxParts> ends;  // stack of parts: ends[top] is the end of the one that starts at lo
+    // A stack: ends[top] is the end of the part that starts at lo, below it the ends of those that follow.
+    std::array<double, kMaxCuts * kMaxParts + 1> ends;
     double lo = 0;
     int top = 0;
     ends[0] = 1;
@@ -95,12 +98,13 @@ class CrossingFilter {
     return Verdict::kUnsure;
   }
 
-  /// Cuts (lo, hi) where f has its extrema, so that the parts are monotonic; where f is near 0 at an extremum, a part is
-  /// spent on the band in which its sign is open. Pushes the cuts, the first one topmost; returns the new top (at most 4 up).
+  /// Cuts (lo, hi) where f has its extrema, so that the parts are monotonic; where f is near 0 at an extremum, a part
+  /// is spent on the band in which its sign is open. Pushes at most kMaxCuts cuts, the first one topmost; returns the
+  /// new top.
   static int PushCuts(const BoundedCubic& g, double lo, double hi, double* ends, int top) {
     const double k1 = g.c1 - g.c0, k2 = g.c2 - 2 * g.c1 + g.c0, k3 = g.c3 - g.c0 + 3 * (g.c1 - g.c2);
     // g'/3 = k1 + 2 k2 x + k3 x^2 at x = (t - lo) / (hi - lo)
-    std::array<double, 4> cuts;
+    std::array<double, kMaxCuts> cuts;
     int size = 0;
     const double discriminant = k2 * k2 - k1 * k3;
     if (discriminant > 0) {
@@ -120,7 +124,7 @@ class CrossingFilter {
       }
     }
     double previous = lo;
-    std::array<double, 4> inside;
+    std::array<double, kMaxCuts> inside;
     int count = 0;
     for (int i = 0; i < size; ++i) {
       const double t = lo + (hi - lo) * cuts[i];
@@ -131,7 +135,8 @@ class CrossingFilter {
     return top;
   }
 
-  /// The pair at the only root in (lo, hi), on which g has the coefficients of f and opposite certain signs at the ends.
+  /// The pair at the only root in (lo, hi), on which g has the coefficients of f and opposite certain signs at the
+  /// ends.
   Verdict AtRoot(const BoundedCubic& g, double lo, double hi, EdgeCrossing& crossing) const {
     double slope = 0;
     const double t = lo + (hi - lo) * RootInside(g, slope);

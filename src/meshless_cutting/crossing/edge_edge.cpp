@@ -1,3 +1,9 @@
+// Four stages; each answers only what it is certain of and hands the rest on:
+//   1. the boxes swept by the edges, compared exactly;
+//   2. the coplanarity cubic and the ordering conditions in double arithmetic with proven bounds (rounded_pair.h);
+//   3. the same with exact coefficients, rounded once: what cancellation hides, and contact at t = 0 and t = 1
+//   (fixed_pair.h);
+//   4. real algebra on integers, which decides everything (exact_crossing.h): touches, double roots, coplanar motion.
 #include "crossing/edge_edge.h"
 
 #include <algorithm>
@@ -6,12 +12,6 @@
 #include "crossing/exact_crossing.h"
 #include "crossing/fixed_pair.h"
 #include "crossing/rounded_pair.h"
-#ifdef COUNT
-long g_cnt[16];
-#define CNT(i) ++g_cnt[i]
-#else
-#define CNT(i)
-#endif
 
 namespace meshless_cutting {
 namespace {
@@ -43,7 +43,6 @@ Verdict DecideRounded(const MovingSegment& a, const MovingSegment& b, EdgeCrossi
 
 /// Out of line: the few pairs that come here should not cost the others registers and cache.
 [[gnu::noinline]] std::optional<EdgeCrossing> DecideExactly(const MovingSegment& a, const MovingSegment& b) {
-  CNT(0);
   const IntegerCoordinates coordinates(a, b);
   if (coordinates.bits > FixedPair::kCoordinateBits) return exact::DecideCrossing(a, b);
   const FixedPair pair(coordinates);
@@ -56,7 +55,6 @@ Verdict DecideRounded(const MovingSegment& a, const MovingSegment& b, EdgeCrossi
     case Verdict::kUnsure:
       break;
   }
-  CNT(7);
   return exact::DecideCrossing(pair.polynomials());
 }
 

@@ -12,14 +12,16 @@ struct MovingSegment {
   Eigen::Vector3d p_t1, q_t1;  // ends at t = 1, m
 };
 
+/// Where and when two edges touch first.
 struct EdgeCrossing {
-  double t;  // first time of contact, in [0, 1]
-  double u;  // proportion along a (from p to q) at t, in [0, 1]
-  double v;  // proportion along b
+  double t;  // first time of contact, in [0, 1]; relative error below 1e-9
+  double u;  // proportion along a (from p to q) at t, in [0, 1]; on parallel edges, of one of the common points
+  double v;  // proportion along b, likewise
 };
 
-/// First contact of the closed segments a and b at a time in the closed [0, 1], or nothing. Never misses a contact.
-/// Any finite doubles. Does not allocate on the fast path.
+/// First contact of the closed segments a and b at a time in the closed [0, 1], or nothing. The answer is that of exact
+/// arithmetic on the given numbers: no miss and no false hit, also where ends touch, where edges stay in one plane, are
+/// parallel or have no length. Any finite doubles. Allocates only where doubles cannot decide (touches, double roots).
 std::optional<EdgeCrossing> FindFirstCrossing(const MovingSegment& a, const MovingSegment& b);
 
 }  // namespace meshless_cutting

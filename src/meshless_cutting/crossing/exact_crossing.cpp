@@ -1,14 +1,15 @@
-// Theory, in the notation of crossing_filter.h. Two points of the segments meet where u a - v b = c; crossed with b and a,
-// u n = p and v n = q. So at a time t with f = 0
+// Theory, in the notation of crossing_filter.h. Two points of the segments meet where u a - v b = c; crossed with b and
+// a, u n = p and v n = q. So at a time t with f = 0
 //   n_k != 0 for some axis k:  the lines meet in one point; it is on both segments iff 0 <= p_k / n_k, q_k / n_k <= 1.
-//   n = 0 (parallel, or a zero-length edge):  the segments are on one line iff p = q = 0, and then they share a point iff
-//     their intervals overlap along each axis; two points (a = b = 0) share a point iff they are equal, which reads the same.
-// If f is not zero everywhere, its roots are the only candidates. If it is, contact can begin only at t = 0 or where one of
-// the conditions just named changes its sign, which are roots of the forms in them: between two of those the answer is
-// constant, and the set of contact times is closed.
+//   n = 0 (parallel, or a zero-length edge):  the segments are on one line iff p = q = 0, and then they share a point
+//     iff their intervals overlap along each axis (two points, a = b = 0, share one iff they are equal: the same).
+// If f is not zero everywhere, its roots are the only candidates. If it is, contact can begin only at t = 0 or where
+// one of the conditions just named changes its sign, which are roots of the forms in them: between two of those the
+// answer is constant, and the set of contact times is closed.
 #include "crossing/exact_crossing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "crossing/exact_root.h"
@@ -17,18 +18,24 @@
 namespace meshless_cutting::exact {
 namespace {
 
-/// Components of the vectors of crossing_filter.h as forms, made when asked for.
+/// Components of the vectors of crossing_filter.h as forms, made when first asked for.
 template <class Polynomials>
 class PairForms {
  public:
   explicit PairForms(const Polynomials& pair) : pair_(pair) {}
 
+  const Form& N(int k) {
+    return Quadratic(n_[k], [&] { return pair_.n[k]; });
+  }
+  const Form& P(int k) {
+    return Quadratic(p_[k], [&] { return pair_.P(k); });
+  }
+  const Form& Q(int k) {
+    return Quadratic(q_[k], [&] { return pair_.Q(k); });
+  }
   Form A(int k) const { return Linear(pair_.a, k); }
   Form B(int k) const { return Linear(pair_.b, k); }
   Form C(int k) const { return Linear(pair_.c, k); }
-  Form N(int k) const { return {2, {ToInteger(pair_.n[k][0]), ToInteger(pair_.n[k][1]), ToInteger(pair_.n[k][2])}}; }
-  Form P(int k) const { return Quadratic(pair_.P(k)); }
-  Form Q(int k) const { return Quadratic(pair_.Q(k)); }
   Form F() const {
     const auto f = pair_.Coplanarity();
     return {3, {ToInteger(f[0]), ToInteger(f[1]), ToInteger(f[2]), ToInteger(f[3])}};
@@ -46,24 +53,32 @@ class PairForms {
   static Form Linear(const Vector& x, int k) {
     return {1, {ToInteger(x[0][k]), ToInteger(x[1][k])}};
   }
-  template <class Coefficients>
-  static Form Quadratic(const Coefficients& x) {
-    return {2, {ToInteger(x[0]), ToInteger(x[1]), ToInteger(x[2])}};
+  template <class Make>
+  static const Form& Quadratic(std::optional<Form>& form, Make make) {
+    if (!form) {
+      const auto x = make();
+      form.emplace(Form{2, {ToInteger(x[0]), ToInteger(x[1]), ToInteger(x[2])}});
+    }
+    return *form;
   }
+
   const Polynomials& pair_;
+  std::array<std::optional<Form>, 3> n_, p_, q_;
 };
 
-/// Of an always coplanar pair: forms, not zero, among whose roots are the times inside (0, 1) at which contact can begin.
+/// Of an always coplanar pair: forms, not zero, among whose roots are the times inside (0, 1) at which contact can
+/// begin.
 template <class Forms>
-std::vector<Form> Switches(const Forms& pair) {
+std::vector<Form> Switches(Forms& pair) {
   std::vector<Form> forms;
+  forms.reserve(12);
   const auto add = [&forms](Form form) {
     if (!form.IsZero()) forms.push_back(std::move(form));
   };
   for (int k = 0; k < 3; ++k) {
-    const Form n = pair.N(k);
+    const Form& n = pair.N(k);
     if (n.IsZero()) continue;
-    const Form p = pair.P(k), q = pair.Q(k);
+    const Form &p = pair.P(k), &q = pair.Q(k);
     for (const Form& form : {n, p, n - p, q, n - q}) add(form);
     return forms;
   }
@@ -80,9 +95,9 @@ std::vector<Form> Switches(const Forms& pair) {
 
 /// Contact at a time at which the pair is coplanar.
 template <class Forms>
-bool InContact(const Forms& pair, Root& t) {
+bool InContact(Forms& pair, Root& t) {
   for (int k = 0; k < 3; ++k) {
-    const Form n = pair.N(k);
+    const Form& n = pair.N(k);
     const int sign = t.SignOf(n);
     if (sign == 0) continue;
     const auto on_edge = [&](const Form& x) { return sign * t.SignOf(x) >= 0 && sign * t.SignOf(n - x) >= 0; };
@@ -105,9 +120,21 @@ double Proportion(const Integer& numerator, const Integer& denominator) {
 
 /// u and v next to the time of contact.
 template <class Forms>
-EdgeCrossing Describe(const Forms& pair, const Root& root) {
-  const Point& at = root.near();
+EdgeCrossing Describe(Forms& pair, const Root& root) {
   EdgeCrossing crossing{root.t(), 0, 0};
+  for (int i = 0; i < 3; ++i) {  // most are plain enough for doubles
+    const Form &n_form = pair.N(i), &p_form = pair.P(i), &q_form = pair.Q(i);
+    if (!n_form.FitsDoubles() || !p_form.FitsDoubles() || !q_form.FitsDoubles()) continue;
+    const BoundedQuadratic n = ToBoundedQuadratic(n_form), p = ToBoundedQuadratic(p_form),
+                           q = ToBoundedQuadratic(q_form);
+    const double n_t = n.Polar(crossing.t, crossing.t);
+    constexpr double kAccuracy = 0x1p-32;
+    if (std::max({n.error, p.error, q.error}) > kAccuracy * std::abs(n_t)) continue;
+    crossing.u = std::clamp(p.Polar(crossing.t, crossing.t) / n_t, 0.0, 1.0);
+    crossing.v = std::clamp(q.Polar(crossing.t, crossing.t) / n_t, 0.0, 1.0);
+    return crossing;
+  }
+  const Point& at = root.near();
   int k = 0;
   Integer n = 0;
   for (int i = 0; i < 3; ++i) {
@@ -136,7 +163,7 @@ EdgeCrossing Describe(const Forms& pair, const Root& root) {
 
 template <class Polynomials>
 std::optional<EdgeCrossing> DecideCrossing(const Polynomials& polynomials) {
-  const PairForms<Polynomials> pair(polynomials);
+  PairForms<Polynomials> pair(polynomials);
   const Form f = pair.F();
   if (f.c[0].is_zero()) {
     Root start = Root::Rational({0, 1});
@@ -146,6 +173,7 @@ std::optional<EdgeCrossing> DecideCrossing(const Polynomials& polynomials) {
   std::vector<Form> switches;  // outlives its roots
   if (f.IsZero()) {
     switches = Switches(pair);
+    candidates.reserve(2 * switches.size() + 1);
     for (const Form& form : switches) {
       for (Root& root : RootsInside(form)) candidates.push_back(std::move(root));
     }

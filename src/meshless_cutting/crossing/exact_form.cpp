@@ -6,14 +6,11 @@
 namespace meshless_cutting::exact {
 namespace {
 
-/// Coefficients over a common power of two; each has a relative error below 2^-51, or has underflowed below 2^-1000 of the
-/// largest one.
+/// Coefficients over a common power of two; each has a relative error below 2^-51, or has underflowed below 2^-1000 of
+/// the largest one.
 std::array<double, 4> ToDoubles(const Form& f) {
   std::array<double, 4> c{};
-  unsigned limbs = 0;
-  for (int i = 0; i <= f.degree; ++i) limbs = std::max(limbs, f.c[i].backend().size());
-  constexpr unsigned kSafeLimbs = 15;  // 2^960 does not overflow
-  if (limbs <= kSafeLimbs) {
+  if (f.FitsDoubles()) {
     for (int i = 0; i <= f.degree; ++i) {
       const Scaled x = ToScaled(f.c[i]);
       c[i] = x.factor;
@@ -54,6 +51,14 @@ double Ratio(const Integer& numerator, const Integer& denominator) {
 bool Form::IsZero() const {
   for (int i = 0; i <= degree; ++i) {
     if (!c[i].is_zero()) return false;
+  }
+  return true;
+}
+
+bool Form::FitsDoubles() const {
+  constexpr unsigned kLimbs = 7;
+  for (int i = 0; i <= degree; ++i) {
+    if (c[i].backend().size() > kLimbs) return false;
   }
   return true;
 }
@@ -130,7 +135,8 @@ BoundedCubic ToBoundedCubic(const Form& f) {
   if (f.degree == 2) g = {c[0], (c[0] + c[1]) / 3, (c[1] + c[2]) / 3, c[2], 0};
   if (f.degree == 1) g = {c[0], (2 * c[0] + c[1]) / 3, (c[0] + 2 * c[1]) / 3, c[1], 0};
   if (f.degree == 0) g = {c[0], c[0], c[0], c[0], 0};
-  // In units of u and of the largest coefficient: 4 for the rounding of an integer, at most 4 for the raising, 9 for At() and On().
+  // In units of u and of the largest coefficient G of g: 4 for the rounding of an integer; to raise the degree from 2
+  // costs most: |f.c[1]| <= 4 G, so that 4 (1 + 4) / 3 + 2 < 8.7; then 9 for At() and On().
   g.error = 18 * kRoundoff * std::max(Largest(g.c0, g.c1), Largest(g.c2, g.c3)) + 0x1p-990;
   return g;
 }

@@ -1,15 +1,13 @@
 // Integer polynomials on t in [0, 1].
 //
-// Notation: a form of degree n is  F(T, W) = sum_i c[i] T^i W^(n-i)  with T : W = t : 1 - t, so that c[i] is the Bernstein
-// coefficient of t times binomial(n, i). Its merits here: integer data gives integer coefficients without a division; t = 0
-// and t = 1 are the points 0 : 1 and 1 : 0 like any other; dividing by t or by 1 - t drops an end coefficient; and
-// Descartes' rule on c counts roots in the open (0, 1), which are the positive roots of x = T / W.
+// Notation: a form of degree n is  F(T, W) = sum_i c[i] T^i W^(n-i)  with T : W = t : 1 - t, so that c[i] is the
+// Bernstein coefficient of t times binomial(n, i). Its merits here: integer data gives integer coefficients without a
+// division; t = 0 and t = 1 are the points 0 : 1 and 1 : 0 like any other; dividing by t or by 1 - t drops an end
+// coefficient; and Descartes' rule on c counts roots in the open (0, 1), which are the positive roots of x = T / W.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <memory>
 
 #include "crossing/bernstein.h"
 #include "crossing/fixed_integer.h"
@@ -24,19 +22,18 @@ using Integer = boost::multiprecision::number<
     boost::multiprecision::et_off>;
 
 inline int Sign(const Integer& x) { return x.sign(); }
-inline int Sign(double x) { return (x > 0) - (x < 0); }
 
 inline const Integer& ToInteger(const Integer& x) { return x; }
-template <int limbs>
-Integer ToInteger(const FixedInteger<limbs>& x) {
-  const FixedInteger<limbs> magnitude = x.Magnitude();
-  int size = limbs;
-  while (size > 1 && magnitude.limb[size - 1] == 0) --size;
+template <int words>
+Integer ToInteger(const FixedInteger<words>& x) {
+  const FixedInteger<words> magnitude = x.Magnitude();
+  int size = 2 * words;
+  while (size > 1 && magnitude.Limb(size - 1) == 0) --size;
   Integer result;
   auto& backend = result.backend();
   static_assert(sizeof(*backend.limbs()) == 8, "limbs of 64 bits are expected");
   backend.resize(static_cast<unsigned>(size), static_cast<unsigned>(size));
-  std::copy_n(magnitude.limb.begin(), size, backend.limbs());
+  for (int i = 0; i < size; ++i) backend.limbs()[i] = magnitude.Limb(i);
   backend.sign(x.IsNegative());
   return result;
 }
@@ -62,6 +59,8 @@ struct Form {
   std::array<Integer, 4> c;
 
   bool IsZero() const;
+  /// Whether the coefficients are below 2^448: doubles hold their squares.
+  bool FitsDoubles() const;
   Integer At(const Point& point) const;
   /// The sign that all coefficients but zeros have: that of the form on the open (0, 1). Nothing if they differ.
   int CommonSign() const;
@@ -74,9 +73,10 @@ struct Form {
 };
 Form operator-(const Form& f, const Form& g);  // of equal degree
 
-/// A form of degree at most 3, raised to degree 3, over some power of two.
+// As polynomials in doubles, over some power of two, which is 1 if FitsDoubles().
+/// Of degree at most 3, raised to degree 3.
 BoundedCubic ToBoundedCubic(const Form& f);
-/// A form of degree at most 2, raised to degree 2, over some power of two.
+/// Of degree at most 2, raised to degree 2.
 BoundedQuadratic ToBoundedQuadratic(const Form& f);
 
 }  // namespace meshless_cutting::exact

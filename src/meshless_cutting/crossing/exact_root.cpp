@@ -6,107 +6,109 @@
 namespace meshless_cutting::exact {
 namespace {
 
-/// The dyadic number at / 2^bits.
-struct Dyadic {
-  Integer at;
-  int bits;
-};
-
 int SignAt(const Form& f, const Dyadic& x) { return Sign(f.At({x.at, (Integer(1) << x.bits) - x.at})); }
 
-/// t where x = T / W is (r + s sqrt(D)) / q, rounded to so many bits; 0 if x <= 0.
-Dyadic NearCriticalPoint(const Integer& r, int s, const Integer& D, const Integer& q, int bits) {
-  const Integer root = D.is_zero() ? D : sqrt(Integer(D << (2 * bits)));
-  Integer T = (r << bits) + s * root;
-  Integer W = q << bits;
-  if (Sign(W) < 0) T = -T, W = -W;
-  if (Sign(T) <= 0) return {0, bits};
-  return {(T << bits) / (T + W), bits};
+/// Of a form that is not zero: its sign next to 0 and next to 1.
+int SignAfterStart(const Form& f) {
+  int i = 0;
+  while (f.c[i].is_zero()) ++i;
+  return Sign(f.c[i]);
+}
+int SignBeforeEnd(const Form& f) {
+  int i = f.degree;
+  while (f.c[i].is_zero()) --i;
+  return Sign(f.c[i]);
 }
 
-/// Both critical points of f in t, in order, to double accuracy; 1/2 where they are not in (0, 1).
-std::array<Dyadic, 2> CriticalPointsByDoubles(const Form& f) {
+/// The roots of f if there are `count`, all simple, and the points lie between them; else nothing. It is known that
+/// there are not more, and the signs of f at the points prove the rest.
+std::vector<Root> RootsBetween(const Form& f, const std::vector<Dyadic>& points, int count) {
+  std::vector<Root> roots;
+  roots.reserve(points.size() + 1);
+  const auto bracket = [&](const Dyadic& lo, const Dyadic& hi) {
+    const int bits = std::max(lo.bits, hi.bits);
+    roots.push_back(Root::Bracketed(f, lo.at << (bits - lo.bits), hi.at << (bits - hi.bits), bits));
+  };
+  Dyadic lo{0, 0};
+  int sign_lo = SignAfterStart(f);
+  for (const Dyadic& point : points) {
+    const int sign = SignAt(f, point);
+    if (sign == 0) return {};
+    if (sign != sign_lo) bracket(lo, point);
+    lo = point, sign_lo = sign;
+  }
+  if (sign_lo != SignBeforeEnd(f)) bracket(lo, {1, 0});
+  if (static_cast<int>(roots.size()) != count) roots.clear();
+  return roots;
+}
+
+/// The positive ones of the points (signs not yet set right), in order.
+std::vector<Root> RationalRoots(std::vector<Point> points) {
+  std::vector<Root> roots;
+  for (Point& point : points) {
+    if (Sign(point.W) < 0) point = {-point.T, -point.W};
+  }
+  std::sort(points.begin(), points.end(), [](const Point& x, const Point& y) { return x.T * y.W < y.T * x.W; });
+  for (const Point& point : points) {
+    if (Sign(point.T) > 0) roots.push_back(Root::Rational(point));
+  }
+  return roots;
+}
+
+/// The extrema of a cubic in (0, 1) to double accuracy, in order.
+std::vector<Dyadic> ExtremaByDoubles(const Form& f) {
   const BoundedCubic g = ToBoundedCubic(f);
   // f' / 3 = k1 + 2 k2 t + k3 t^2
   const double k1 = g.c1 - g.c0, k2 = g.c2 - 2 * g.c1 + g.c0, k3 = g.c3 - g.c0 + 3 * (g.c1 - g.c2);
   const double w = -(k2 + std::copysign(std::sqrt(std::max(k2 * k2 - k1 * k3, 0.0)), k2));
-  double left = w / k3, right = k1 / w;
-  if (left > right) std::swap(left, right);
+  std::vector<Dyadic> points;
   constexpr int kBits = 53;
-  const auto dyadic = [](double t) {
-    return Dyadic{t > 0 && t < 1 ? static_cast<long long>(std::ldexp(t, kBits)) : 1LL << (kBits - 1), kBits};
-  };
-  return {dyadic(left), dyadic(right)};
+  for (const double t : {std::min(w / k3, k1 / w), std::max(w / k3, k1 / w)}) {
+    if (t > 0 && t < 1) points.push_back({static_cast<long long>(std::ldexp(t, kBits)), kBits});
+  }
+  return points;
 }
 
-constexpr int kSplitBits = 56;  // tried first, then doubled: the wanted sign holds on an interval around the critical point
-
-std::vector<Root> BetweenSplits(const Form& f, const std::vector<Dyadic>& splits) {
-  std::vector<Root> roots;
-  Dyadic lo{0, 0};
-  for (size_t i = 0; i <= splits.size(); ++i) {
-    const Dyadic hi = i < splits.size() ? splits[i] : Dyadic{1, 0};
-    const int bits = std::max(lo.bits, hi.bits);
-    roots.push_back(Root::Bracketed(f, lo.at << (bits - lo.bits), hi.at << (bits - hi.bits), bits));
-    lo = hi;
+/// The roots of f, of which there are `count` > 1, all simple.
+std::vector<Root> SeparatedRoots(const Form& f, int count) {
+  Form derivative;
+  derivative.degree = f.degree - 1;
+  for (int i = 0; i < f.degree; ++i) derivative.c[i] = (i + 1) * f.c[i + 1] - (f.degree - i) * f.c[i];
+  // Between two roots is an extremum, and all around it f has the same sign.
+  std::vector<Root> extrema = derivative.degree == 1 ? RootsBetween(derivative, {}, 1) : RootsInside(derivative);
+  for (Root& extremum : extrema) extremum.Locate();
+  for (;;) {
+    std::vector<Dyadic> points;
+    for (const Root& extremum : extrema) points.push_back(extremum.NearDyadic());
+    std::vector<Root> roots = RootsBetween(f, points, count);
+    if (!roots.empty()) return roots;
+    for (Root& extremum : extrema) extremum.Refine();
   }
-  return roots;
 }
 
-/// Those of the points (signs not yet set right) that are positive, in order.
-std::vector<Root> RationalRoots(std::vector<Point> points) {
-  std::vector<Root> roots;
-  for (Point& point : points) {
-    if (Sign(point.W) < 0) point.T = -point.T, point.W = -point.W;
-  }
-  std::sort(points.begin(), points.end(), [](const Point& x, const Point& y) { return x.T * y.W < y.T * x.W; });
-  for (Point& point : points) {
-    if (Sign(point.T) > 0) roots.push_back(Root::Rational(std::move(point)));
-  }
-  return roots;
-}
-
-/// Roots x > 0 of c[0] + c[1] x + c[2] x^2 with two sign variations.
+/// Roots of a form with the coefficients c[0 ... 2] once its roots at 0 and 1 are taken off, with two sign variations.
 std::vector<Root> QuadraticRoots(const Form& f, const Integer* c) {
   const Integer discriminant = c[1] * c[1] - 4 * c[0] * c[2];
   if (Sign(discriminant) < 0) return {};
-  const Integer T = -c[1], W = 2 * c[2];
-  if (discriminant.is_zero()) return RationalRoots({{T, W}});
-  for (int bits = kSplitBits;; bits *= 2) {
-    const Dyadic split = NearCriticalPoint(T, 1, 0, W, bits);
-    if (SignAt(f, split) == -Sign(c[0])) return BetweenSplits(f, {split});
-  }
+  if (discriminant.is_zero()) return RationalRoots({{-c[1], 2 * c[2]}});
+  return SeparatedRoots(f, 2);
 }
 
-/// Roots x > 0 of c0 + c1 x + c2 x^2 + c3 x^3 with two or three sign variations, c0 and c3 not zero.
+/// Roots of a form of degree 3 with two or three sign variations, not 0 at the ends.
 std::vector<Root> CubicRoots(const Form& f, int variations) {
+  std::vector<Root> roots = RootsBetween(f, ExtremaByDoubles(f), variations);
+  if (!roots.empty()) return roots;
   const auto& c = f.c;
-  const int s = Sign(c[3]);
-  // From the left, three different roots give: sign -s, root, s at a critical point, root, -s at the other critical point,
-  // root, s. The leftmost root is not positive if there are two variations. Seeing these signs is proof enough.
-  const auto separated_by = [&](const Dyadic& left, const Dyadic& right) {
-    return SignAt(f, right) == -s && (variations == 2 || (left.at < right.at && SignAt(f, left) == s));
-  };
-  const auto roots_between = [&](const Dyadic& left, const Dyadic& right) {
-    return variations == 2 ? BetweenSplits(f, {right}) : BetweenSplits(f, {left, right});
-  };
-  const auto [left_guess, right_guess] = CriticalPointsByDoubles(f);
-  if (separated_by(left_guess, right_guess)) return roots_between(left_guess, right_guess);
-
   const Integer c22 = c[2] * c[2], c13 = c[1] * c[3], c03 = c[0] * c[3], c12 = c[1] * c[2];
   const Integer discriminant = c12 * (c12 + 18 * c03) - 4 * (c13 * c[1] * c[1] + c22 * c[2] * c[0]) - 27 * c03 * c03;
-  const Integer D = c22 - 3 * c13;  // of the derivative, over 4
-  if (discriminant.is_zero()) {     // a multiple root: then all roots are rational
+  if (discriminant.is_zero()) {  // a multiple root: then all roots are rational
+    const Integer D = c22 - 3 * c13;
     if (D.is_zero()) return RationalRoots({{-c[2], 3 * c[3]}});
     return RationalRoots({{9 * c03 - c12, 2 * D}, {4 * c13 * c[2] - 9 * c03 * c[3] - c22 * c[2], c[3] * D}});
   }
   // One real root if the discriminant is negative; three if it is positive, and then Descartes' rule counts exactly.
-  if (Sign(discriminant) < 0) return variations == 3 ? BetweenSplits(f, {}) : std::vector<Root>();
-  for (int bits = kSplitBits;; bits *= 2) {
-    const Dyadic left = NearCriticalPoint(-c[2], -s, D, 3 * c[3], bits);
-    const Dyadic right = NearCriticalPoint(-c[2], s, D, 3 * c[3], bits);
-    if (separated_by(left, right)) return roots_between(left, right);
-  }
+  if (Sign(discriminant) < 0) return RootsBetween(f, {}, variations % 2);
+  return SeparatedRoots(f, variations);
 }
 
 }  // namespace
@@ -124,14 +126,14 @@ Root Root::Bracketed(const Form& form, Integer lo, Integer hi, int bits) {
   root.hi_ = std::move(hi);
   root.bits_ = bits;
   if (root.lo_.is_zero()) {  // where the form may have another root
-    for (int i = 0; root.sign_lo_ == 0; ++i) root.sign_lo_ = Sign(form.c[i]);
+    root.sign_lo_ = SignAfterStart(form);
   } else {
-    root.sign_lo_ = Sign(form.At(root.Dyadic(root.lo_)));
+    root.sign_lo_ = Sign(form.At(root.At(root.lo_)));
   }
   return root;
 }
 
-Point Root::Dyadic(const Integer& numerator) const { return {numerator, (Integer(1) << bits_) - numerator}; }
+Point Root::At(const Integer& numerator) const { return {numerator, (Integer(1) << bits_) - numerator}; }
 
 void Root::SetRational(Point point) {
   form_ = nullptr;
@@ -144,7 +146,7 @@ void Root::Locate() {
   if (located_) return;
   StartByDoubles();
   // What t() promises. The root is not 0: lo_ leaves 0 at some refinement.
-  while (form_ != nullptr && hi_ - lo_ > (lo_ >> 32)) Refine();
+  while (form_ != nullptr && ((hi_ - lo_) << 32) > lo_) Refine();
   if (form_ == nullptr) return;  // found to be rational
   located_ = true;
   const Integer one = Integer(2) << bits_;
@@ -155,7 +157,7 @@ void Root::Locate() {
 }
 
 void Root::Refine() {
-  if (!RefineByDoubles()) Halve();
+  if (form_ != nullptr && !RefineByDoubles()) Halve();
 }
 
 /// Most roots are seen well enough with the coefficients on all of [0, 1].
@@ -177,7 +179,7 @@ void Root::StartByDoubles() {
 
 /// Takes the coefficients on the bracket, where doubles see the root as large as the bracket is.
 bool Root::RefineByDoubles() {
-  const Form on_bracket = bits_ == 0 ? *form_ : form_->On(Dyadic(lo_), Dyadic(hi_));
+  const Form on_bracket = bits_ == 0 ? *form_ : form_->On(At(lo_), At(hi_));
   const BoundedCubic g = ToBoundedCubic(on_bracket.WithoutRootsAtEnds());
   double slope = 0;
   const double x = RootInside(g, slope);
@@ -200,16 +202,17 @@ bool Root::RefineByDoubles() {
 void Root::Halve() {
   const Integer middle = lo_ + hi_;
   ++bits_;
-  const int sign = Sign(form_->At(Dyadic(middle)));
+  const int sign = Sign(form_->At(At(middle)));
   if (sign == 0) {
-    SetRational(Dyadic(middle));
+    SetRational(At(middle));
+    lo_ = hi_ = middle;
     return;
   }
   lo_ = sign == sign_lo_ ? middle : Integer(lo_ << 1);
   hi_ = sign == sign_lo_ ? Integer(hi_ << 1) : middle;
 }
 
-int Root::SignOnBracket(const Form& g) const { return g.On(Dyadic(lo_), Dyadic(hi_)).CommonSign(); }
+int Root::SignOnBracket(const Form& g) const { return g.On(At(lo_), At(hi_)).CommonSign(); }
 
 bool Root::IsRootOf(const Form& g) const {
   // Euclid's algorithm in x = T / W: the remainder l1 x + l0 of form_ by g = g2 x^2 + g1 x + g0, without divisions.
@@ -224,7 +227,7 @@ bool Root::IsRootOf(const Form& g) const {
     }
     if (f[0].is_zero() && f[1].is_zero()) {
       // g divides form_, whose only root on the bracket is simple: it is g's as well if g changes its sign there.
-      return Sign(g.At(Dyadic(lo_))) != Sign(g.At(Dyadic(hi_)));
+      return Sign(g.At(At(lo_))) != Sign(g.At(At(hi_)));
     }
     l0 = std::move(f[0]), l1 = std::move(f[1]);
   }
@@ -239,7 +242,11 @@ bool Root::IsRootOf(const Form& g) const {
 int Root::SignOf(const Form& g) {
   if (g.IsZero()) return 0;
   Locate();
-  if (form_ == nullptr) return near_.T.is_zero() ? Sign(g.c[0]) : near_.W.is_zero() ? Sign(g.c[g.degree]) : Sign(g.At(near_));
+  if (form_ == nullptr) {
+    if (near_.T.is_zero()) return Sign(g.c[0]);
+    if (near_.W.is_zero()) return Sign(g.c[g.degree]);
+    return Sign(g.At(near_));
+  }
   if (const int sign = g.CommonSign()) return sign;
   if (const int sign = ToBoundedQuadratic(g).SignNear(t_, reach_)) return sign;
   if (IsRootOf(g)) return 0;
@@ -253,7 +260,7 @@ int Root::SignOf(const Form& g) {
 std::vector<Root> RootsInside(const Form& f) {
   const int variations = f.Variations();
   if (variations == 0) return {};
-  if (variations == 1 && f.degree > 1) return BetweenSplits(f, {});
+  if (variations == 1 && f.degree > 1) return RootsBetween(f, {}, 1);
   int first = 0, last = f.degree;
   while (f.c[first].is_zero()) ++first;
   while (f.c[last].is_zero()) --last;

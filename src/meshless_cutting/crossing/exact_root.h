@@ -7,12 +7,19 @@
 
 namespace meshless_cutting::exact {
 
+/// The number at / 2^bits.
+struct Dyadic {
+  Integer at;
+  int bits;
+};
+
 /// A root of a form, without multiplicity: a rational number, or the only root of the form on a bracket.
 class Root {
  public:
   /// The rational number T : W.
   static Root Rational(Point point);
-  /// The only root of `form` between lo / 2^bits and hi / 2^bits; it is simple. The form stays where it is: it is referred to.
+  /// The only root of `form` between lo / 2^bits and hi / 2^bits; it is simple. The form stays where it is: it is
+  /// referred to.
   static Root Bracketed(const Form& form, Integer lo, Integer hi, int bits);
 
   /// Exact sign of g here. Locates the root.
@@ -26,12 +33,17 @@ class Root {
   /// t, with a relative error below 2^-32.
   double t() const { return t_; }
 
+  // Of a bracketed root:
+  /// Its bracket shrinks, at least to a half.
+  void Refine();
+  /// A point in the bracket, not at its ends.
+  Dyadic NearDyadic() const { return {lo_ + hi_, bits_ + 1}; }
+
  private:
   Root() = default;
-  Point Dyadic(const Integer& numerator) const;
+  /// The point numerator / 2^bits_.
+  Point At(const Integer& numerator) const;
   void SetRational(Point point);
-  /// Shrinks the bracket; may find the root to be rational.
-  void Refine();
   void StartByDoubles();
   bool RefineByDoubles();
   void Halve();
@@ -44,7 +56,7 @@ class Root {
   int sign_lo_ = 0;             // of form_ on (lo, root)
   Integer lo_, hi_;             // bracket, in units of 2^-bits_
   int bits_ = 0;
-  bool located_ = false;        // whether what follows is set
+  bool located_ = false;  // whether what follows is set
   Point near_;
   double t_ = 0;
   double reach_ = 0;  // the root is within reach_ of t_

@@ -28,11 +28,13 @@ const std::pair<Eigen::Vector3d, Eigen::Vector3d>& CrossingFinder::Motion(int ve
 }
 
 void CrossingFinder::FindNearBlocks(const Aabb& box, const LatticeMotion& object) {
-  const auto &x0 = object.particles_t0(), &x1 = object.particles_t1();
-  particle_code_.resize(x1.size());
-  for (size_t j = 0; j < x1.size(); ++j) {
-    particle_code_[j] = Outcode(x0[j], box.min, box.max) & Outcode(x1[j], box.min, box.max);
-  }
+  auto encode = [&](const std::vector<Eigen::Vector3d>& x0, const std::vector<Eigen::Vector3d>& x1,
+                    std::vector<std::uint8_t>& codes) {
+    codes.resize(x1.size());
+    for (size_t i = 0; i < x1.size(); ++i) codes[i] = Outcode(x0[i], box.min, box.max) & Outcode(x1[i], box.min, box.max);
+  };
+  encode(object.particles_t0(), object.particles_t1(), particle_code_);
+  encode(object.surface_t0(), object.surface_t1(), surface_code_);
   // A block lies beyond a side when the particles that bound it and its loose vertices do.
   const int count = object.block_count();
   block_code_.assign(count, 63);
@@ -42,11 +44,14 @@ void CrossingFinder::FindNearBlocks(const Aabb& box, const LatticeMotion& object
     std::uint8_t code = 63;
     const int* particles = object.block_particles(b);
     for (int k = 0; k < object.support_size(); ++k) code &= particle_code_[particles[k]];
-    for (int v : object.block_vertices(b)) {
+    for (int v : object.block_loose(b)) {
       if (code == 0) break;
-      if (!object.loose(v)) continue;
-      const auto& [start, end] = Motion(v, object);
-      code &= Outcode(start, box.min, box.max) & Outcode(end, box.min, box.max);
+      if (const int s = object.SurfaceVertex(v); s >= 0) {
+        code &= surface_code_[s];
+      } else {
+        const auto& [start, end] = Motion(v, object);
+        code &= Outcode(start, box.min, box.max) & Outcode(end, box.min, box.max);
+      }
     }
     block_code_[b] = code;
   }

@@ -37,7 +37,7 @@ class CrossingFinder {
   const Lattice* lattice_;
   const MaterialGraph* graph_;
   std::vector<Crossing> found_;
-  std::vector<std::uint8_t> particle_code_, block_code_, near_;
+  std::vector<std::uint8_t> particle_code_, surface_code_, block_code_, near_;
   std::vector<int> near_blocks_;
   std::vector<std::uint32_t> stamp_;  // per vertex: search in which its motion was evaluated
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion_;

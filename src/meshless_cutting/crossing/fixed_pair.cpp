@@ -3,20 +3,16 @@
 namespace meshless_cutting {
 namespace {
 
-FixedInteger<2> Shifted(std::int64_t mantissa, int shift) {
-  __extension__ using Wide = __int128;
-  __extension__ using UnsignedWide = unsigned __int128;
-  const auto x = static_cast<UnsignedWide>(static_cast<Wide>(mantissa)) << shift;
-  return {{static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(x >> 64)}};
-}
-
 double Proportion(double numerator, double denominator) {
   return denominator == 0 ? 0 : std::clamp(numerator / denominator, 0.0, 1.0);
 }
 
 FixedPair::Polynomials::Ends Shifted(const IntegerCoordinates& coordinates) {
   FixedPair::Polynomials::Ends ends;
-  for (int i = 0; i < 24; ++i) ends[i / 3][i % 3] = Shifted(coordinates.mantissa[i], coordinates.shift[i]);
+  for (int i = 0; i < 24; ++i) {
+    // Two's complement extends the sign; shifting it is the multiplication.
+    ends[i / 3][i % 3] = {{static_cast<Word>(coordinates.mantissa[i]) << coordinates.shift[i]}};
+  }
   return ends;
 }
 
@@ -46,8 +42,9 @@ Verdict FixedPair::FirstCrossing(EdgeCrossing& crossing) const {
     const BoundedCubic zero{0, 0, 0, 0, 0};
     return CrossingFilter(*this, zero).Separated(0, 1) ? Verdict::kMiss : Verdict::kUnsure;
   }
-  // Without its roots at 0 and 1, of degree last - first; then raised to degree 3 again. In units of u and of the largest
-  // coefficient: 4 for the rounding of an exact number, 1 for a binomial, 4 for the raising, 9 for At() and On().
+  // Without its roots at 0 and 1, of degree last - first; then raised to degree 3 again. In units of u and of the
+  // largest coefficient G: 4 for the rounding of an exact number; to raise the degree from 2 costs most: |g[1]| <= 4 G,
+  // so that 4 (1 + 4) / 3 + 2 < 8.7; then 9 for At() and On().
   std::array<double, 4> g{};
   const int degree = last - first;
   for (int i = 0; i <= degree; ++i) g[i] = f[first + i].ToDouble();
@@ -55,7 +52,8 @@ Verdict FixedPair::FirstCrossing(EdgeCrossing& crossing) const {
   if (degree == 2) cubic = {g[0], (g[0] + g[1]) / 3, (g[1] + g[2]) / 3, g[2], 0};
   if (degree == 1) cubic = {g[0], (2 * g[0] + g[1]) / 3, (g[0] + 2 * g[1]) / 3, g[1], 0};
   if (degree == 0) cubic = {g[0], g[0], g[0], g[0], 0};
-  cubic.error = 19 * kRoundoff * std::max({std::abs(cubic.c0), std::abs(cubic.c1), std::abs(cubic.c2), std::abs(cubic.c3)});
+  cubic.error =
+      19 * kRoundoff * std::max({std::abs(cubic.c0), std::abs(cubic.c1), std::abs(cubic.c2), std::abs(cubic.c3)});
   const Verdict verdict = CrossingFilter(*this, cubic).FirstCrossing(crossing);
   if (verdict != Verdict::kMiss) return verdict;
   return f[3].IsZero() && ContactAtEnd(1, crossing) ? Verdict::kHit : Verdict::kMiss;

@@ -15,9 +15,9 @@ class FixedPair {
  public:
   /// Coordinates must be multiples of a power of two and below 2^119 of it.
   static constexpr int kCoordinateBits = 119;
-  using Coordinate = FixedInteger<2>;   // differences: < 2^120
-  using Product = FixedInteger<4>;      // sums of four products: < 2^242
-  using Coefficient = FixedInteger<6>;  // sums of twelve products of three: < 2^365
+  using Coordinate = FixedInteger<1>;   // differences: < 2^120
+  using Product = FixedInteger<2>;      // sums of four products: < 2^242
+  using Coefficient = FixedInteger<3>;  // sums of twelve products of three: < 2^365
   using Polynomials = PairPolynomials<Coordinate, Product, Coefficient>;
 
   /// coordinates.bits <= kCoordinateBits

@@ -8,7 +8,8 @@
 
 namespace meshless_cutting {
 
-/// Coordinate i is mantissa[i] * 2^shift[i], over a common power of two. Order: A0, A1, B0, B1 at t = 0, then at t = 1; xyz.
+/// Coordinate i is mantissa[i] * 2^shift[i], over a common power of two. Order: A0, A1, B0, B1 at t = 0, then at t = 1;
+/// xyz.
 struct IntegerCoordinates {
   std::array<std::int64_t, 24> mantissa;
   std::array<int, 24> shift;  // >= 0; 0 for a zero

@@ -26,11 +26,12 @@ class LatticeMotion {
   void SetWindow(const std::vector<Eigen::Vector3d>* particles_t0, const std::vector<Eigen::Vector3d>* particles_t1,
                  const std::vector<Eigen::Vector3d>* surface_t0, const std::vector<Eigen::Vector3d>* surface_t1);
 
-  /// During a cut, before the tissue changes: the inner vertices that will be mapped anew keep where they are as the start of the next window.
-  /// `particles`: positions now. Then Remap() once the tissue has changed.
-  void KeepStart(const std::vector<int>& vertices, const std::vector<Eigen::Vector3d>& particles);
-  void Remap(const std::vector<int>& vertices);
-  /// Forgets what KeepStart() kept; call when a window has been searched.
+  /// During a cut, before the tissue's particles change: the blocks of `points` were split or lost material. Inner vertices
+  /// that the graph no longer joins to their point keep where they are (`particles`: positions now) as the start of the next window.
+  void KeepStarts(const std::vector<int>& points, const std::vector<Eigen::Vector3d>& particles);
+  /// After it: maps those anew, and follows the particles of all `points` whose links changed.
+  void Remap(const std::vector<int>& points);
+  /// Forgets what KeepStarts() kept; call when a window has been searched.
   void ForgetStarts();
 
   Eigen::Vector3d Start(int vertex) const;
@@ -45,26 +46,33 @@ class LatticeMotion {
   /// Particles that bound the vertices of a block, but for its loose ones.
   const int* block_particles(int block) const { return &tissue_->point_particles[static_cast<size_t>(block) * tissue_->support_size]; }
   int support_size() const { return tissue_->support_size; }
-  /// True when the particles of the vertex's block do not bound it: a skin vertex, or one mapped from outside a cell.
-  bool loose(int vertex) const { return surface_->VertexOf(vertex) >= 0 || !mapping_.convex(vertex); }
+  /// Vertices of a block that its particles do not bound: those of the skin, and those mapped from outside a cell.
+  const std::vector<int>& block_loose(int block) const { return block_loose_[block]; }
   /// How far a vertex can be outside the bounds of its block, m.
   double slack() const { return 4 * offset_size_; }
+  /// Skin vertex of the drawn surface, -1 inside.
+  int SurfaceVertex(int vertex) const { return surface_->VertexOf(vertex); }
+  const std::vector<Eigen::Vector3d>& surface_t0() const { return *surface_t0_; }
+  const std::vector<Eigen::Vector3d>& surface_t1() const { return *surface_t1_; }
   const std::vector<Eigen::Vector3d>& particles_t0() const { return *particles_t0_; }
   const std::vector<Eigen::Vector3d>& particles_t1() const { return *particles_t1_; }
 
   const VertexMapping& mapping() const { return mapping_; }
 
  private:
+  void Enter(int vertex);
+  void Leave(int vertex);
   void Link(int vertex);
-  Eigen::Vector3d Offset(int vertex) const;
 
   const Lattice* lattice_;
   const CutSurface* surface_;
   const Tissue* tissue_;
   double offset_size_;  // m
+  std::vector<Eigen::Vector3d> offset_;  // per vertex, m
   VertexMapping mapping_;  // all lattice vertices; those of the skin use it for their block alone
-  std::vector<std::vector<int>> block_vertices_, block_neighbours_;
-  std::vector<std::pair<int, Eigen::Vector3d>> kept_;       // sorted by vertex
+  std::vector<std::vector<int>> block_vertices_, block_loose_, block_neighbours_;
+  std::vector<int> lost_;                              // vertices to be mapped anew
+  std::vector<std::pair<int, Eigen::Vector3d>> kept_;  // sorted by vertex
   const std::vector<Eigen::Vector3d>*particles_t0_ = nullptr, *particles_t1_ = nullptr;
   const std::vector<Eigen::Vector3d>*surface_t0_ = nullptr, *surface_t1_ = nullptr;
 };

@@ -1,4 +1,5 @@
-// The polynomials of a pair of moving segments with exact coefficients, for any kind of integer. Notation: crossing_filter.h.
+// The polynomials of a pair of moving segments with exact coefficients, for any kind of integer. Notation:
+// crossing_filter.h.
 #pragma once
 
 #include <array>
@@ -45,8 +46,7 @@ struct PairPolynomials {
  private:
   static Quadratic Cross(const Vector& x, const Vector& y, int k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    return {CrossAtEnd(x, y, 0, k),
-            (x[0][i] * y[1][j] - x[0][j] * y[1][i]) + (x[1][i] * y[0][j] - x[1][j] * y[0][i]),
+    return {CrossAtEnd(x, y, 0, k), (x[0][i] * y[1][j] - x[0][j] * y[1][i]) + (x[1][i] * y[0][j] - x[1][j] * y[0][i]),
             CrossAtEnd(x, y, 1, k)};
   }
   static Product CrossAtEnd(const Vector& x, const Vector& y, int end, int k) {

@@ -1,4 +1,5 @@
-// The polynomials of a pair of moving segments in plain double arithmetic, with proven bounds. Notation: crossing_filter.h.
+// The polynomials of a pair of moving segments in plain double arithmetic, with proven bounds. Notation:
+// crossing_filter.h.
 //
 // Let A, B, C be the largest |computed component| of a, b, c at t = 0 and t = 1. First-order constants in units of u:
 //   a, b, c            one rounded difference: |computed - true| <= A u, |true| <= A (1 + u); likewise b, c.
@@ -9,11 +10,12 @@
 //   p - n, q - n       coefficients: 10 (C + A) B + 2 (C + A) B; at t: 12 + 6 * 2 = 24, times (C + A) B, or (C + B) A.
 //   n(0) . c(0)        products: 8 + 2 (error of c) + 2 (rounding) = 12 each; sums <= 4 and <= 6: 3 * 12 + 4 + 6 = 46,
 //                      times A B C, and the number is <= 6 A B C. Likewise n(1) . c(1), n(0) . c(1), n(1) . c(0).
-//   n01 . c            n01 = the doubled middle coefficient: products: 20 + 4 + 4 = 28; sums: 8 and 12: 3 * 28 + 20 = 104.
-//   c1, c2 of f        46 + 104 + 18 (sum <= 18) = 168; over 3, + 6 for the division: 62. The coefficients are <= 6 A B C.
-//   cubic at t         62 + 9 * 6 (three levels of Lerp) = 116.
+//   n01 . c            n01 = the doubled middle coefficient: products: 20 + 4 + 4 = 28; sums: 8 and 12: 3 * 28 + 20 =
+//   104. c1, c2 of f        46 + 104 + 18 (sum <= 18) = 168; over 3, + 6 for the division: 62. The coefficients are <=
+//   6 A B C. cubic at t         62 + 9 * 6 (three levels of Lerp) = 116.
 // Of the quadratics, |true coefficient| <= 2 X Y, so that |derivative| <= 2 * 4 X Y.
-// Underflow: at most 40 products err by 2^-1075 each, before factors < 2^200: below 2^-860.
+// Underflow: fewer than 100 operations err by at most 2^-1022 each (flushed to zero at worst), before factors < 2^400
+// in all: below 2^-615.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,13 +31,20 @@ class RoundedPair {
   // In units of roundoff: what is derived above, plus room for its terms of second order.
   static constexpr double kQuadraticError = 25 * kRoundoff;
   static constexpr double kCubicError = 118 * kRoundoff;
-  static constexpr double kUnderflow = 0x1p-860;
-  /// Sizes beyond which products could overflow; below its inverse, kUnderflow would hide the signs.
+  static constexpr double kUnderflow = 0x1p-610;
+  /// Beyond this, products could overflow. (And below its inverse kUnderflow hides the signs.)
   static constexpr double kLargest = 0x1p200;
 
   RoundedPair(const MovingSegment& a, const MovingSegment& b)
-      : a0_(a.q_t0 - a.p_t0), a1_(a.q_t1 - a.p_t1), b0_(b.q_t0 - b.p_t0), b1_(b.q_t1 - b.p_t1), c0_(b.p_t0 - a.p_t0),
-        c1_(b.p_t1 - a.p_t1), A_(Largest(a0_, a1_)), B_(Largest(b0_, b1_)), C_(Largest(c0_, c1_)) {}
+      : a0_(a.q_t0 - a.p_t0),
+        a1_(a.q_t1 - a.p_t1),
+        b0_(b.q_t0 - b.p_t0),
+        b1_(b.q_t1 - b.p_t1),
+        c0_(b.p_t0 - a.p_t0),
+        c1_(b.p_t1 - a.p_t1),
+        A_(Largest(a0_, a1_)),
+        B_(Largest(b0_, b1_)),
+        C_(Largest(c0_, c1_)) {}
 
   /// Whether the bounds hold. Not for huge numbers, nor where a difference overflowed.
   bool InRange() const { return A_ < kLargest && B_ < kLargest && C_ < kLargest; }
@@ -67,13 +76,14 @@ class RoundedPair {
   static double Largest(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
     return x.cwiseAbs().cwiseMax(y.cwiseAbs()).maxCoeff();
   }
-  static double Dot(const Eigen::Vector3d& x, const Eigen::Vector3d& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
+  static double Dot(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+  }
   /// Component k of the cross product of two vectors that are linear in t.
   static Coefficients Cross(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, const Eigen::Vector3d& y0,
                             const Eigen::Vector3d& y1, int k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    return {x0[i] * y0[j] - x0[j] * y0[i],
-            0.5 * ((x0[i] * y1[j] - x0[j] * y1[i]) + (x1[i] * y0[j] - x1[j] * y0[i])),
+    return {x0[i] * y0[j] - x0[j] * y0[i], 0.5 * ((x0[i] * y1[j] - x0[j] * y1[i]) + (x1[i] * y0[j] - x1[j] * y0[i])),
             x1[i] * y1[j] - x1[j] * y1[i]};
   }
   static Coefficients Minus(const Coefficients& x, const Coefficients& y) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 namespace meshless_cutting {
@@ -16,31 +17,34 @@ BackgroundGrid FitGrid(const Lattice& lattice, const ObjectConfig& config) {
   return BackgroundGrid(low, high, config.cell_size_m, ShapeFunctions::Margin(config.support_radius_cells));
 }
 
-/// Vertices that share a triangle with each vertex.
-Incidence VertexNeighbours(const Surface& surface) {
-  Incidence neighbours;
-  neighbours.offsets.assign(surface.rest_positions.size() + 1, 0);
-  for (const auto& t : surface.triangles)
-    for (std::uint32_t v : t) neighbours.offsets[v + 1] += 2;
-  std::partial_sum(neighbours.offsets.begin(), neighbours.offsets.end(), neighbours.offsets.begin());
-  neighbours.items.resize(neighbours.offsets.back());
-  std::vector<int> next(neighbours.offsets.begin(), neighbours.offsets.end() - 1);
-  for (const auto& t : surface.triangles)
-    for (int i = 0; i < 3; ++i) {
-      neighbours.items[next[t[i]]++] = static_cast<int>(t[(i + 1) % 3]);
-      neighbours.items[next[t[i]]++] = static_cast<int>(t[(i + 2) % 3]);
-    }
-  return neighbours;
-}
+/// Surroundings of the marked vertices of a surface: outward normals at rest (not unit) and the vertices they share triangles with.
+struct Surroundings {
+  std::vector<int> slot;  // per vertex: index below, -1 where not marked
+  std::vector<Eigen::Vector3d> normal;
+  std::vector<std::vector<int>> neighbours;
+};
 
-std::vector<Eigen::Vector3d> RestNormals(const Surface& surface) {
-  std::vector<Eigen::Vector3d> normals(surface.rest_positions.size(), Eigen::Vector3d::Zero());
+Surroundings FindSurroundings(const Surface& surface, const std::vector<std::uint8_t>& marked) {
+  Surroundings around;
+  around.slot.assign(marked.size(), -1);
+  int count = 0;
+  for (size_t v = 0; v < marked.size(); ++v)
+    if (marked[v]) around.slot[v] = count++;
+  around.normal.assign(count, Eigen::Vector3d::Zero());
+  around.neighbours.resize(count);
   for (const auto& t : surface.triangles) {
+    if (!(marked[t[0]] | marked[t[1]] | marked[t[2]])) continue;
     const Eigen::Vector3d& a = surface.rest_positions[t[0]];
     const Eigen::Vector3d n = (surface.rest_positions[t[1]] - a).cross(surface.rest_positions[t[2]] - a);
-    for (std::uint32_t v : t) normals[v] += n;
+    for (int i = 0; i < 3; ++i) {
+      const int slot = around.slot[t[i]];
+      if (slot < 0) continue;
+      around.normal[slot] += n;
+      around.neighbours[slot].push_back(static_cast<int>(t[(i + 1) % 3]));
+      around.neighbours[slot].push_back(static_cast<int>(t[(i + 2) % 3]));
+    }
   }
-  return normals;
+  return around;
 }
 
 }  // namespace
@@ -58,7 +62,7 @@ SoftBody::SoftBody(const Lattice& lattice, const ObjectConfig& config, bool can_
   state_.velocity.assign(state_.position.size(), Eigen::Vector3d::Zero());
   state_.acceleration = state_.velocity;
   cut_surface_.WriteTriangles(surface_);
-  MapSurface({}, 0, {});
+  MapSurface({}, {}, 0, {});
   if (can_be_cut) motion_.emplace(lattice, cut_surface_, points_, shape_, tissue_);
   EndAdvance();    // positions of the surface as mapped,
   BeginAdvance();  // where the first window starts
@@ -72,55 +76,46 @@ void SoftBody::Cut(const std::vector<LinkCut>& cuts) {
   const int first_new_vertex = static_cast<int>(cut_surface_.vertices().size());
   cut_surface_.Update(links);
 
-  // Inner lattice vertices whose point is about to change start their next window where they were published.
   const std::vector<int>& changed = points_.Update(cut_surface_, cut_surface_.changed_tetrahedra());
-  std::vector<int> lattice_vertices;
-  for (int p : changed)
-    if (p < motion_->block_count())
-      lattice_vertices.insert(lattice_vertices.end(), motion_->block_vertices(p).begin(), motion_->block_vertices(p).end());
-  std::sort(lattice_vertices.begin(), lattice_vertices.end());
-  motion_->KeepStart(lattice_vertices, state_.position);
-
+  motion_->KeepStarts(changed, state_.position);
   std::vector<int> source;
   const std::vector<int>& relinked = twins_.Update(changed, tissue_, source);
   for (int from : source)
     for (auto* values : {&state_.position, &state_.velocity, &state_.acceleration}) values->push_back((*values)[from]);
-  // Points that only had a particle replaced by its twin: same weights, same positions, other indices.
-  for (int p : relinked)
-    if (p < motion_->block_count() && !std::binary_search(changed.begin(), changed.end(), p))
-      lattice_vertices.insert(lattice_vertices.end(), motion_->block_vertices(p).begin(), motion_->block_vertices(p).end());
-  std::sort(lattice_vertices.begin(), lattice_vertices.end());
-  motion_->Remap(lattice_vertices);
+  motion_->Remap(relinked);
 
   cut_surface_.WriteTriangles(surface_);
-  MapSurface(relinked, first_new_vertex, cuts);
+  MapSurface(changed, relinked, first_new_vertex, cuts);
 }
 
 // Who is mapped anew (section 2.3): new vertices, the ends of cut links, and vertices on points that changed.
-void SoftBody::MapSurface(const std::vector<int>& relinked_points, int first_new_vertex, const std::vector<LinkCut>& cuts) {
+void SoftBody::MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points,
+                          int first_new_vertex, const std::vector<LinkCut>& cuts) {
   const auto& vertices = cut_surface_.vertices();
+  const int count = static_cast<int>(vertices.size());
   std::vector<std::uint8_t> affected(vertices.size(), 0);
-  for (size_t v = static_cast<size_t>(first_new_vertex); v < vertices.size(); ++v) {
+  for (int v = first_new_vertex; v < count; ++v) {
     mapping_.Add(vertices[v].rest, vertices[v].anchor);
     surface_.rest_positions.push_back(vertices[v].rest);
     surface_.positions.emplace_back();
     affected[v] = 1;
   }
-  std::vector<std::uint8_t> on_changed_point(points_.points().size(), 0);
-  for (int p : relinked_points) on_changed_point[p] = 1;
-  for (int v = 0; v < first_new_vertex; ++v) affected[v] = on_changed_point[mapping_.point(v)];
+  std::vector<std::uint8_t> is_changed(points_.points().size(), 0), is_relinked(points_.points().size(), 0);
+  for (int p : changed_points) is_changed[p] = 1;
+  for (int p : relinked_points) is_relinked[p] = 1;
+  for (int v = 0; v < first_new_vertex; ++v) {
+    affected[v] = is_changed[mapping_.point(v)];
+    if (is_relinked[mapping_.point(v)]) mapping_.Refresh(v);
+  }
   for (const LinkCut& cut : cuts)
     for (int end : lattice_->links[cut.link])
       if (const int v = cut_surface_.VertexOf(end); v >= 0) affected[v] = 1;
 
-  const Incidence neighbours = VertexNeighbours(surface_);
-  const std::vector<Eigen::Vector3d> normals = RestNormals(surface_);
-  for (size_t v = 0; v < vertices.size(); ++v)
-    if (affected[v]) mapping_.Unmap(static_cast<int>(v));
-  for (size_t v = 0; v < vertices.size(); ++v)
-    if (affected[v])
-      mapping_.Map(static_cast<int>(v), normals[v],
-                   {neighbours.begin(static_cast<int>(v)), neighbours.end(static_cast<int>(v))});
+  const Surroundings around = FindSurroundings(surface_, affected);
+  for (int v = 0; v < count; ++v)
+    if (affected[v]) mapping_.Unmap(v);
+  for (int v = 0; v < count; ++v)
+    if (affected[v]) mapping_.Map(v, around.normal[around.slot[v]], around.neighbours[around.slot[v]]);
   FindFragments();
   ++surface_.version;
 }

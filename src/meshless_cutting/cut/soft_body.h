@@ -51,7 +51,8 @@ class SoftBody {
   const std::vector<int>& point_fragment() const { return point_fragment_; }
 
  private:
-  void MapSurface(const std::vector<int>& relinked_points, int first_new_vertex, const std::vector<LinkCut>& cuts);
+  void MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points, int first_new_vertex,
+                  const std::vector<LinkCut>& cuts);
   void FindFragments();
 
   const Lattice* lattice_;

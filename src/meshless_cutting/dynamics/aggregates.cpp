@@ -52,13 +52,13 @@ void Aggregates::Build(const Tissue& tissue, const std::vector<double>& free, in
 void Aggregates::Join(const Tissue& tissue) {
   const int K = tissue.support_size;
   for (int p = 0; p < tissue.point_count(); ++p) {
-    const int* particles = &tissue.point_particles[static_cast<std::size_t>(p) * K];
+    const int* support = &tissue.point_particles[static_cast<std::size_t>(p) * K];
     for (int a = 1; a < K; ++a) {
-      if (cell_[particles[a]] < 0) continue;
+      if (cell_[support[a]] < 0) continue;
       // Any earlier particle of the cell will do: those before it have been joined to that one.
       for (int b = 0; b < a; ++b) {
-        if (cell_[particles[b]] != cell_[particles[a]]) continue;
-        const int x = Find(particles[a]), y = Find(particles[b]);
+        if (cell_[support[b]] != cell_[support[a]]) continue;
+        const int x = Find(support[a]), y = Find(support[b]);
         if (x != y) {
           parent_[std::max(x, y)] = std::min(x, y);
           size_[std::min(x, y)] += size_[std::max(x, y)];
@@ -72,12 +72,12 @@ void Aggregates::Join(const Tissue& tissue) {
 void Aggregates::MergeSmall(const Tissue& tissue) {
   const int K = tissue.support_size;
   for (int p = 0; p < tissue.point_count(); ++p) {
-    const int* particles = &tissue.point_particles[static_cast<std::size_t>(p) * K];
+    const int* support = &tissue.point_particles[static_cast<std::size_t>(p) * K];
     for (int a = 0; a < K; ++a) {
-      if (cell_[particles[a]] < 0) continue;
+      if (cell_[support[a]] < 0) continue;
       for (int b = 0; b < a; ++b) {
-        if (cell_[particles[b]] < 0) continue;
-        const int x = Find(particles[a]), y = Find(particles[b]);
+        if (cell_[support[b]] < 0) continue;
+        const int x = Find(support[a]), y = Find(support[b]);
         if (x == y || std::min(size_[x], size_[y]) >= kSmall) continue;
         parent_[std::max(x, y)] = std::min(x, y);
         size_[std::min(x, y)] += size_[std::max(x, y)];

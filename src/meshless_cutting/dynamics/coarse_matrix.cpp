@@ -22,6 +22,7 @@ void CoarseMatrix::TissueChanged(const Tissue& tissue, const std::vector<double>
   }
   first_unknown_.resize(size());
   for (int i = 0; i < size(); ++i) first_unknown_[i] = kUnknowns * first_[i / kUnknowns];
+  Clear();
 }
 
 void CoarseMatrix::Add(int a, int c, int b, int d, const double* block) {

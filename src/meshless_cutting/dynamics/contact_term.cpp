@@ -7,10 +7,10 @@ namespace meshless_cutting {
 namespace {
 
 /// Depth that the object's own pressure may press a vertex in, m. Smaller is stiffer and harder to solve.
-constexpr double kRestingDepth = 2e-4;
+constexpr double kRestingDepth = 4e-4;
 
-/// Contact is at least so many times as stiff as the cell behind it, so that no body is much softer than its contact.
-constexpr double kStiffnessRatio = 2;
+/// Contact is at least so many times as stiff as the cell behind it, so that no body is much stiffer than its contact.
+constexpr double kStiffnessRatio = 1;
 
 /// Time constant of the damping while touching, s: about half of critical for a tray's load of tissue.
 constexpr double kDampingTime = 0.005;
@@ -32,8 +32,9 @@ void ContactTerm::SetSkin(const SurfacePoints& skin, int particles, bool changed
   if (!changed && arranged_.share.size() == static_cast<std::size_t>(skin.count())) return;
   arranged_.Build(skin, particles);
   memory_.resize(skin.count());
-  candidates_.reserve(skin.count());
-  active_.reserve(skin.count());
+  candidates_.reserve(obstacles_.size() * skin.count());
+  active_.reserve(obstacles_.size() * skin.count());
+  active_tangent_.reserve(obstacles_.size() * skin.count());
 }
 
 Eigen::Vector3d ContactTerm::PositionOf(int vertex, const Field& y) const {
@@ -43,9 +44,13 @@ Eigen::Vector3d ContactTerm::PositionOf(int vertex, const Field& y) const {
   return sum.vector();
 }
 
+Eigen::Vector3d ContactTerm::EndOf(const Candidate& c, const Field& y) const {
+  return c.start + (PositionOf(c.vertex, y) - c.start) / stage_;
+}
+
 void ContactTerm::AddCandidate(int vertex, int obstacle, const StageMotion& motion) {
   const Memory& memory = memory_[vertex];
-  const bool touched = memory.step == step_ - 1 && memory.obstacle == obstacle;
+  const bool touched = memory.step == step_ && memory.obstacle == obstacle;
   const Eigen::Vector3d x = PositionOf(vertex, *motion.start);
   Candidate c;
   c.vertex = vertex;
@@ -56,14 +61,13 @@ void ContactTerm::AddCandidate(int vertex, int obstacle, const StageMotion& moti
   c.stuck = c.touched && memory.stuck;
   c.friction_force = c.touched ? obstacles_[obstacle].friction() * memory.normal_force : 0;
   c.anchor = c.touched ? memory.anchor : x;
-  c.still = PositionOf(vertex, *motion.still);
-  c.normal_tangent = c.across_tangent = 0;
+  c.start = x;
   candidates_.push_back(c);
 }
 
 void ContactTerm::BeginStep(const StageMotion& motion) {
-  ++step_;
-  rate_ = motion.rate;
+  stage_ = motion.stage;
+  damping_per_stiffness_ = kDampingTime / motion.step_s;
   candidates_.clear();
   active_.clear();
   Eigen::AlignedBox3d bounds;
@@ -85,7 +89,7 @@ double ContactTerm::Evaluate(const Field& y, Field& gradient) {
   const int K = skin_->support_size;
   for (const Candidate& c : candidates_) {
     const HalfSpace& face = obstacles_[c.obstacle].face(c.face);
-    const Eigen::Vector3d x = PositionOf(c.vertex, y);
+    const Eigen::Vector3d x = EndOf(c, y);
     const double gap = face.Gap(x);
     if (gap >= 0 && !c.touched) continue;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
@@ -94,8 +98,8 @@ double ContactTerm::Evaluate(const Field& y, Field& gradient) {
       force = c.stiffness * gap * face.normal;
     }
     if (c.touched) {
-      const double damping = c.stiffness * kDampingTime * rate_;
-      Eigen::Vector3d way = x - c.still;
+      const double damping = c.stiffness * damping_per_stiffness_;
+      Eigen::Vector3d way = x - c.start;
       if (!c.stuck) way = face.normal.dot(way) * face.normal;
       energy += 0.5 * damping * way.squaredNorm();
       force += damping * way;
@@ -115,60 +119,67 @@ double ContactTerm::Evaluate(const Field& y, Field& gradient) {
     const std::size_t first = static_cast<std::size_t>(c.vertex) * K;
     for (int k = 0; k < K; ++k) gradient[skin_->particles[first + k]] += skin_->weights[first + k] * f;
   }
-  return energy;
+  return stage_ * energy;
+}
+
+Eigen::Matrix3d ContactTerm::TangentOf(const Candidate& c, const Eigen::Vector3d& x) const {
+  const HalfSpace& face = obstacles_[c.obstacle].face(c.face);
+  const Eigen::Matrix3d along = face.normal * face.normal.transpose();
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - along;
+  const double damping = c.stiffness * damping_per_stiffness_;
+  Eigen::Matrix3d tangent = ((face.Gap(x) < 0 ? c.stiffness : 0) + (c.touched ? damping : 0)) * along;
+  if (c.stuck) tangent += damping * across;
+  if (c.friction_force > 0) {
+    const Eigen::Vector3d t = Across(face, x - c.anchor);
+    const double length = t.norm();
+    if (c.stiffness * length <= c.friction_force) {
+      tangent += c.stiffness * across;
+    } else {
+      tangent += (c.friction_force / length) * (across - t * t.transpose() / (length * length));
+    }
+  }
+  return tangent / stage_;
 }
 
 void ContactTerm::Linearise(const Field& y) {
   active_.clear();
+  active_tangent_.clear();
   for (int n = 0; n < static_cast<int>(candidates_.size()); ++n) {
-    Candidate& c = candidates_[n];
-    const HalfSpace& face = obstacles_[c.obstacle].face(c.face);
-    const Eigen::Vector3d x = PositionOf(c.vertex, y);
-    c.normal_tangent = face.Gap(x) < 0 ? c.stiffness : 0;
-    c.across_tangent = 0;
-    const double damping = c.stiffness * kDampingTime * rate_;
-    if (c.touched) c.normal_tangent += damping;
-    if (c.stuck) c.across_tangent += damping;
-    if (c.friction_force > 0) {
-      // Of the yielding part, the secant: positive definite, and never softer than the true one.
-      const double length = Across(face, x - c.anchor).norm();
-      c.across_tangent += std::min(c.stiffness, c.friction_force / std::max(length, 1e-300));
-    }
-    if (c.normal_tangent > 0) active_.push_back(n);
+    const Candidate& c = candidates_[n];
+    const Eigen::Vector3d x = EndOf(c, y);
+    if (!c.touched && obstacles_[c.obstacle].face(c.face).Gap(x) >= 0) continue;
+    active_.push_back(n);
+    active_tangent_.push_back(TangentOf(c, x));
   }
 }
 
 void ContactTerm::AddProduct(const Field& p, Field& q) {
   const int K = skin_->support_size;
-  for (int n : active_) {
-    const Candidate& c = candidates_[n];
-    const Vector4 normal = Vector4::From(obstacles_[c.obstacle].face(c.face).normal);
-    const std::size_t first = static_cast<std::size_t>(c.vertex) * K;
+  for (std::size_t n = 0; n < active_.size(); ++n) {
+    const std::size_t first = static_cast<std::size_t>(candidates_[active_[n]].vertex) * K;
     const int* particles = &skin_->particles[first];
     const double* weights = &skin_->weights[first];
     Vector4 sum;
     for (int k = 0; k < K; ++k) sum += weights[k] * p[particles[k]];
-    const Vector4 f = ((c.normal_tangent - c.across_tangent) * Dot(normal, sum)) * normal + c.across_tangent * sum;
+    const Vector4 f = Vector4::From(active_tangent_[n] * sum.vector());
     for (int k = 0; k < K; ++k) q[particles[k]] += weights[k] * f;
   }
 }
 
 void ContactTerm::AddDiagonal(BlockField& blocks) {
   const int K = skin_->support_size;
-  for (int index : active_) {
-    const Candidate& c = candidates_[index];
-    const Eigen::Vector3d& n = obstacles_[c.obstacle].face(c.face).normal;
-    const double a = c.normal_tangent - c.across_tangent, b = c.across_tangent;
-    const std::size_t first = static_cast<std::size_t>(c.vertex) * K;
+  for (std::size_t n = 0; n < active_.size(); ++n) {
+    const Eigen::Matrix3d& tangent = active_tangent_[n];
+    const std::size_t first = static_cast<std::size_t>(candidates_[active_[n]].vertex) * K;
     for (int k = 0; k < K; ++k) {
       const double w = skin_->weights[first + k] * skin_->weights[first + k];
       SymmetricBlock& block = blocks[skin_->particles[first + k]];
-      block.xx += w * (a * n.x() * n.x() + b);
-      block.yy += w * (a * n.y() * n.y() + b);
-      block.zz += w * (a * n.z() * n.z() + b);
-      block.xy += w * a * n.x() * n.y();
-      block.xz += w * a * n.x() * n.z();
-      block.yz += w * a * n.y() * n.z();
+      block.xx += w * tangent(0, 0);
+      block.yy += w * tangent(1, 1);
+      block.zz += w * tangent(2, 2);
+      block.xy += w * tangent(0, 1);
+      block.xz += w * tangent(0, 2);
+      block.yz += w * tangent(1, 2);
     }
   }
 }
@@ -176,12 +187,8 @@ void ContactTerm::AddDiagonal(BlockField& blocks) {
 void ContactTerm::AddCoarse(CoarseMatrix& matrix) {
   const int K = skin_->support_size;
   const Aggregates& aggregates = matrix.aggregates();
-  for (int index : active_) {
-    const Candidate& c = candidates_[index];
-    const Eigen::Vector3d& n = obstacles_[c.obstacle].face(c.face).normal;
-    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> stiffness = (c.normal_tangent - c.across_tangent) * n * n.transpose();
-    stiffness.diagonal().array() += c.across_tangent;
-    const std::size_t first = static_cast<std::size_t>(c.vertex) * K;
+  for (std::size_t n = 0; n < active_.size(); ++n) {
+    const std::size_t first = static_cast<std::size_t>(candidates_[active_[n]].vertex) * K;
     for (int k = 0; k < K; ++k) {
       const int jk = skin_->particles[first + k], a = aggregates.of_particle[jk];
       if (a < 0) continue;
@@ -193,7 +200,7 @@ void ContactTerm::AddCoarse(CoarseMatrix& matrix) {
         for (int f = 0; f < CoarseMatrix::kFunctions; ++f) {
           for (int g = 0; g < CoarseMatrix::kFunctions; ++g) {
             const double weight = skin_->weights[first + k] * skin_->weights[first + l] * bk[f] * bl[g];
-            const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block = weight * stiffness;
+            const Eigen::Matrix3d block = weight * active_tangent_[n];  // symmetric: rows or columns alike
             matrix.Add(a, f, b, g, block.data());
           }
         }
@@ -203,10 +210,11 @@ void ContactTerm::AddCoarse(CoarseMatrix& matrix) {
 }
 
 void ContactTerm::EndStep(const Field& y) {
+  ++step_;
   contact_count_ = 0;
   for (const Candidate& c : candidates_) {
     const HalfSpace& face = obstacles_[c.obstacle].face(c.face);
-    const Eigen::Vector3d x = PositionOf(c.vertex, y);
+    const Eigen::Vector3d x = EndOf(c, y);
     const double gap = face.Gap(x);
     if (gap >= 0) continue;
     ++contact_count_;

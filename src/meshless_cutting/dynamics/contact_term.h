@@ -20,8 +20,13 @@ struct ContactScale {
 /// Per vertex, with gap s along the normal n of the face that holds it, way t along the face from where it stuck:
 ///   k/2 min(s, 0)^2                                   stiffness k = (stiffness per area) (share of the surface)
 ///   k/2 |t|^2 up to |t| = mu N / k, then linear        N: normal force at the end of the last step
-///   damping k tau of v.n where it touched, and of the rest of v where it stuck, at the end of the last step
+///   k tau / (2 dt) |d|^2                               d: way during this step, along n where the vertex touched at the end of the
+///                                                      last step, all of it where it stuck
 /// all convex. Friction is a spring that yields (not a smoothed sign of the velocity), so that what lies on a slope stays.
+///
+/// Whatever the scheme, these are taken at the end of the step, x1 = x0 + (y - x0) / stage: a force that is found at the stage
+/// alone lets a fast vertex go on through the surface in the rest of the step. The potential is stage Phi(x1(y)), whose
+/// gradient by y is the force Phi'(x1).
 class ContactTerm : public ForceTerm {
  public:
   ContactTerm(const std::vector<ObstacleConfig>& obstacles, const ContactScale& scale);
@@ -37,6 +42,9 @@ class ContactTerm : public ForceTerm {
   void AddCoarse(CoarseMatrix& matrix) override;
   void EndStep(const Field& y) override;
 
+  /// No vertex can touch during this step.
+  bool IsFar() const { return candidates_.empty(); }
+
   /// Vertices that touched at the end of the last step.
   int contact_count() const { return contact_count_; }
   double stiffness_per_area() const { return stiffness_per_area_; }  // Pa/m
@@ -49,9 +57,7 @@ class ContactTerm : public ForceTerm {
     double friction_force;   // N, mu times the normal force of the last step
     bool touched, stuck;     // at the end of the last step
     Eigen::Vector3d anchor;  // m, where friction holds it
-    Eigen::Vector3d still;   // m, where it would be if its velocity were zero
-    // Tangent: along the normal and across it, N/m.
-    double normal_tangent, across_tangent;
+    Eigen::Vector3d start;   // m, at the start of the step
   };
   /// What a vertex remembers of the last step; of step `step` only.
   struct Memory {
@@ -62,7 +68,9 @@ class ContactTerm : public ForceTerm {
     Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
   };
 
+  Eigen::Matrix3d TangentOf(const Candidate& c, const Eigen::Vector3d& x) const;
   Eigen::Vector3d PositionOf(int vertex, const Field& y) const;
+  Eigen::Vector3d EndOf(const Candidate& c, const Field& y) const;
   void AddCandidate(int vertex, int obstacle, const StageMotion& motion);
 
   std::vector<Obstacle> obstacles_;
@@ -72,8 +80,10 @@ class ContactTerm : public ForceTerm {
   std::vector<Memory> memory_;
   std::vector<Candidate> candidates_;
   std::vector<int> active_;  // candidates with a tangent
-  double rate_ = 0;
-  std::int64_t step_ = 0;
+  std::vector<Eigen::Matrix3d> active_tangent_;
+  double stage_ = 1;
+  double damping_per_stiffness_ = 0;  // tau / dt
+  std::int64_t step_ = 0;             // steps ended
   int contact_count_ = 0;
 };
 

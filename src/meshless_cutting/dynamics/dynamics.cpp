@@ -5,6 +5,7 @@
 
 #include "dynamics/contact_term.h"
 #include "dynamics/elastic_term.h"
+#include "dynamics/fragments.h"
 #include "dynamics/newton.h"
 #include "dynamics/stiffness_damping_term.h"
 #include "dynamics/time_scheme.h"
@@ -15,11 +16,30 @@ namespace {
 /// A step that fails is repeated as 2, 4, ... steps; after so many doublings it is given up.
 constexpr int kDoublings = 4;
 
+/// An object may sleep when no particle moves farther in a step than this share of a cell.
+constexpr double kSleepingWay = 1e-3;
+
+/// A second order step that ends with a larger residual, or with so many times the energy that it began with (plus this
+/// share of modulus times volume), is repeated as one of implicit Euler.
+constexpr double kRoughResidual = 0.05;
+constexpr double kEnergyGrowth = 1.5;
+constexpr double kEnergyFloor = 1e-3;
+
+/// Differences of energies below this share of modulus times volume are rounding.
+constexpr double kEnergyRounding = 1e-15;
+
 /// Forces below this share of (shear modulus) (cross section of the object) are rounding.
-constexpr double kForceRounding = 1e-10;
+constexpr double kForceRounding = 1e-8;
 
 bool IsFinite(const std::vector<Eigen::Vector3d>& values) {
   return std::all_of(values.begin(), values.end(), [](const Eigen::Vector3d& v) { return v.allFinite(); });
+}
+
+/// Edge of the largest cell: the grid's, of which many are full.
+double CellOf(const Tissue& tissue) {
+  double volume = 0;
+  for (double v : tissue.point_volume) volume = std::max(volume, v);
+  return std::cbrt(volume);
 }
 
 ContactScale ContactScaleOf(const DynamicsConfig& config, const Tissue& tissue, const LameConstants& lame) {
@@ -27,9 +47,7 @@ ContactScale ContactScaleOf(const DynamicsConfig& config, const Tissue& tissue, 
   scale.modulus_pa = lame.lambda + 2 * lame.mu;
   Eigen::AlignedBox3d bounds;
   for (const Eigen::Vector3d& X : tissue.particle_rest) bounds.extend(X);
-  double volume = 0;
-  for (double v : tissue.point_volume) volume = std::max(volume, v);
-  scale.cell_m = std::cbrt(volume);
+  scale.cell_m = CellOf(tissue);
   const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
   scale.own_pressure_pa = config.material.density_kg_m3 * gravity * bounds.sizes().maxCoeff();
   return scale;
@@ -47,7 +65,7 @@ struct Dynamics::Parts {
         newton(potential, config.solver.relative_tolerance, config.solver.newton_iterations) {
     terms.push_back(&elastic);
     if (config.damping && config.damping->stiffness_s > 0) {
-      terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points));
+      terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points, elastic));
     }
     if (!config.obstacles.empty()) {
       terms.push_back(&contact.emplace(config.obstacles, ContactScaleOf(config, tissue, points.lame())));
@@ -56,6 +74,10 @@ struct Dynamics::Parts {
 
   void TissueChanged(const Tissue& tissue);
   void Load(const TissueState& state);
+  void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
+  bool Sleeps(const Tissue& tissue, const TimeScheme& scheme);
+  double EnergyOf(const Tissue& tissue, const Field& x, const Field& v);
+  NewtonSolver::Verdict Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
   bool Solve(const Tissue& tissue, double time_step, AdvanceResult& result);
   bool SolveSteps(const Tissue& tissue, int steps, AdvanceResult& result);
 
@@ -68,14 +90,18 @@ struct Dynamics::Parts {
   std::vector<ForceTerm*> terms;
   IncrementalPotential potential;
   NewtonSolver newton;
+  Fragments fragments;
 
   int particles = 0;
   bool skin_changed = true;
   bool first_step = true;
   double load = 0;  // N, what residuals are measured against besides the forces inside
+  double energy_floor = 0;  // J
+  double cell = 0;  // m, edge of a cell of the background grid
 
   Field position, velocity, acceleration;                    // of the step in progress
   Field start_position, start_velocity, start_acceleration;  // of the frame
+  Field end_position, end_velocity, end_acceleration;        // of the step in progress, until it is accepted
   Field stage, steady, still, scratch;
 };
 
@@ -83,11 +109,14 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   particles = tissue.particle_count();
   skin_changed = true;
   points.TissueChanged(tissue);
+  for (ForceTerm* term : terms) term->TissueChanged(particles);
+  fragments.Build(tissue);
   potential.Resize(particles);
-  for (Field* field : {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration, &stage,
-                       &steady, &still, &scratch}) {
+  for (Field* field : {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration,
+                       &end_position, &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch}) {
     field->resize(particles);
   }
+  cell = CellOf(tissue);
   double weight = 0, volume = 0;
   const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
   for (int j = 0; j < particles; ++j) {
@@ -98,6 +127,9 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   }
   for (double v : tissue.point_volume) volume += v;
   newton.TissueChanged(tissue);
+  const double modulus = points.lame().lambda + 2 * points.lame().mu;
+  energy_floor = kEnergyFloor * modulus * volume;
+  newton.SetEnergyRounding(kEnergyRounding * modulus * volume);
   load = std::sqrt(weight) + kForceRounding * points.lame().mu * std::pow(volume, 2.0 / 3);
 }
 
@@ -117,58 +149,122 @@ void Dynamics::Parts::Load(const TissueState& state) {
   first_step = false;
 }
 
-/// One implicit step from position, velocity, acceleration, which it replaces; false: they are as before.
-bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResult& result) {
-  const TimeScheme scheme(config.solver.integrator, time_step);
+/// Sets up the step from position with the given velocities and accelerations.
+void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a) {
   const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
   const double mass_damping = config.damping ? config.damping->mass_per_s : 0;
   const double inertia = scheme.inertia() + mass_damping * scheme.rate();
   double reach = 0;
   for (int j = 0; j < particles; ++j) {
-    const Vector4 &x = position[j], &v = velocity[j], &a = acceleration[j];
-    potential.inertia[j] = tissue.particle_mass[j] * inertia;
+    const Vector4& x = position[j];
     if (potential.free[j] == 0) {
       potential.inertia[j] = 0;
       potential.target[j] = still[j] = steady[j] = x;
       continue;
     }
-    still[j] = scheme.Still(x, v, a);
-    steady[j] = scheme.Steady(x, v, a);
+    potential.inertia[j] = tissue.particle_mass[j] * inertia;
+    still[j] = scheme.Still(x, v[j], a[j]);
+    steady[j] = scheme.Steady(x, v[j], a[j]);
     // Gravity and damping proportional to mass are inertia with another target.
-    potential.target[j] = x + (scheme.inertia() / inertia) * (scheme.Target(x, v, a) - x) + (1 / inertia) * gravity +
-                          (mass_damping * scheme.rate() / inertia) * (still[j] - x);
+    potential.target[j] = x + (scheme.inertia() / inertia) * (scheme.Target(x, v[j], a[j]) - x) +
+                          (1 / inertia) * gravity + (mass_damping * scheme.rate() / inertia) * (still[j] - x);
     const Vector4 way = potential.target[j] - x;
     reach = std::max(reach, Dot(way, way));
   }
-  const StageMotion motion{scheme.rate(), &still, &position, 2 * std::sqrt(reach)};
+  StageMotion motion;
+  motion.rate = scheme.rate();
+  motion.still = &still;
+  motion.start = &position;
+  motion.reach = 2 * std::sqrt(reach) / scheme.stage();
+  motion.stage = scheme.stage();
+  motion.step_s = scheme.time_step_s();
   for (ForceTerm* term : terms) term->BeginStep(motion);
+}
 
-  // Begin where the object already is on its way, or, if that is lower, where it goes without forces.
-  double energy = newton.Start(steady);
+/// Where next to nothing moves and the forces balance without inertia, the object sleeps: it stays exactly where it is.
+/// Only under gravity: there, balance means that it is held or lies on something, not that it drifts.
+bool Dynamics::Parts::Sleeps(const Tissue& tissue, const TimeScheme& scheme) {
+  if (!config.gravity_m_s2) return false;
+  double fastest = 0;
+  for (int j = 0; j < particles; ++j) fastest = std::max(fastest, Dot(velocity[j], velocity[j]));
+  if (std::sqrt(fastest) * scheme.time_step_s() > kSleepingWay * cell) return false;
+  std::fill(scratch.begin(), scratch.end(), Vector4());
+  Prepare(tissue, scheme, scratch, scratch);
+  newton.Start(position);
+  if (!newton.StartIsConverged(load)) return false;
+  for (ForceTerm* term : terms) term->EndStep(position);
+  velocity = acceleration = scratch;
+  return true;
+}
+
+/// Energy of motion, strain and gravity, J, at the given state. Contact has none worth counting.
+double Dynamics::Parts::EnergyOf(const Tissue& tissue, const Field& x, const Field& v) {
+  std::fill(scratch.begin(), scratch.end(), Vector4());
+  double energy = points.Evaluate(x, scratch);
+  const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
+  for (int j = 0; j < particles; ++j) {
+    energy += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
+  }
+  return energy;
+}
+
+/// One step of `scheme` from position, velocity, acceleration into those of the end.
+NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
+  Prepare(tissue, scheme, velocity, acceleration);
+
+  // Begin where the object already is on its way, or where it goes without forces, or where it is: the lowest. The last
+  // bounds the energy of a step whose iterations run out.
   stage = steady;
+  double energy = newton.Start(stage);
   if (!newton.StartIsConverged(load)) {
-    const double free_energy = newton.Start(potential.target);
-    if (free_energy < energy) {
-      energy = free_energy;
-      stage = potential.target;
-    } else if (std::isfinite(energy)) {
-      newton.Start(stage);
-    } else {
-      stage = position;
-      newton.Start(stage);
+    const Field* best = &steady;
+    for (const Field* guess : {&potential.target, &position}) {
+      const double other = newton.Start(*guess);
+      if (other < energy) {
+        energy = other;
+        best = guess;
+      }
     }
+    if (best != &position) newton.Start(*best);
+    stage = *best;
   }
   const NewtonSolver::Result solved = newton.Minimise(stage, load);
   result.newton_iterations += solved.newton_iterations;
   result.linear_iterations += solved.linear_iterations;
   result.relative_residual = solved.relative_residual;
-  if (solved.verdict == NewtonSolver::Verdict::kFailed) return false;
-  if (solved.verdict == NewtonSolver::Verdict::kNotConverged) result.status |= kStepNotConverged;
+  if (solved.verdict == NewtonSolver::Verdict::kFailed) return solved.verdict;
 
-  for (ForceTerm* term : terms) term->EndStep(stage);
+  if (!contact || contact->IsFar()) fragments.Balance(newton.residual(), potential.inertia, stage);
+  end_position = position;
+  end_velocity = velocity;
+  end_acceleration = acceleration;
   for (int j = 0; j < particles; ++j) {
-    if (potential.free[j] > 0) scheme.Finish(stage[j], position[j], velocity[j], acceleration[j]);
+    if (potential.free[j] > 0) scheme.Finish(stage[j], end_position[j], end_velocity[j], end_acceleration[j]);
   }
+  return solved.verdict;
+}
+
+/// One implicit step from position, velocity, acceleration, which it replaces; false: they are as before.
+bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResult& result) {
+  const TimeScheme scheme(config.solver.integrator, time_step);
+  if (Sleeps(tissue, scheme)) {
+    result.relative_residual = newton.RelativeResidual(load);
+    return true;
+  }
+  NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
+  if (config.solver.integrator != Integrator::kImplicitEuler &&
+      (verdict == NewtonSolver::Verdict::kFailed || result.relative_residual > kRoughResidual ||
+       EnergyOf(tissue, end_position, end_velocity) >
+           kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor)) {
+    // The end of a second order step lies beyond the stage that was solved for. After violence that is no place to go.
+    verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, time_step), result);
+  }
+  if (verdict == NewtonSolver::Verdict::kFailed) return false;
+  if (verdict == NewtonSolver::Verdict::kNotConverged) result.status |= kStepNotConverged;
+  for (ForceTerm* term : terms) term->EndStep(stage);
+  position.swap(end_position);
+  velocity.swap(end_velocity);
+  acceleration.swap(end_acceleration);
   return true;
 }
 
@@ -220,6 +316,7 @@ AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin,
     result.kinetic_j += 0.5 * tissue.particle_mass[j] * state.velocity[j].squaredNorm();
     if (p.config.gravity_m_s2) result.gravity_j -= tissue.particle_mass[j] * p.config.gravity_m_s2->dot(state.position[j]);
   }
+  std::fill(p.scratch.begin(), p.scratch.end(), Vector4());
   result.elastic_j = p.points.Evaluate(p.position, p.scratch);
   if (p.contact) result.contacts = p.contact->contact_count();
   return result;

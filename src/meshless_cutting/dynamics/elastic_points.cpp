@@ -46,10 +46,13 @@ double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
   return energy;
 }
 
-void ElasticPoints::Linearise(const Field& x, PointTangent& tangent) {
+void ElasticPoints::Resize(PointTangent& tangent) const {
   for (int g = 0; g < kSupportShapes; ++g) {
     tangent.groups[g].resize(static_cast<std::size_t>(groups_.groups[g].batches) * kernels_[g].tangent_size * kLanes);
   }
+}
+
+void ElasticPoints::Linearise(const Field& x, PointTangent& tangent) {
   pool_.ForEach(static_cast<int>(groups_.chunks.size()),
                 [&](int c) { kernels_[groups_.chunks[c].group].linearise(Arguments(groups_.chunks[c], x, &tangent)); });
 }

@@ -25,6 +25,8 @@ class ElasticPoints {
 
   /// Strain energy and stabilisation, J; adds its gradient, N.
   double Evaluate(const Field& x, Field& gradient);
+  /// Sizes a tangent for the tissue as it is; before Linearise.
+  void Resize(PointTangent& tangent) const;
   void Linearise(const Field& x, PointTangent& tangent);
   /// q += factor tangent p.
   void AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q);

@@ -18,6 +18,8 @@ struct StageMotion {
   const Field* still = nullptr;   // m, where y would be if the velocity were zero
   const Field* start = nullptr;   // m, positions at the start of the step
   double reach = 0;               // m, no particle is expected to move farther
+  double stage = 1;               // y = start + stage (end of the step - start)
+  double step_s = 0;              // time step
 };
 
 /// A term Phi(y) of the potential whose minimum over the stage positions y is the step. Loops over particles or points are
@@ -25,6 +27,9 @@ struct StageMotion {
 class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
+
+  /// After the tissue changed: sizes buffers.
+  virtual void TissueChanged(int /*particles*/) {}
 
   /// Once before a step is solved: takes the quantities that the step holds constant.
   virtual void BeginStep(const StageMotion&) {}

@@ -18,7 +18,7 @@ constexpr double kSufficientDescent = 1e-4;
 /// Where no way down is found, a residual below this is a matter of rounding, above it a failure.
 constexpr double kUsableResidual = 0.3;
 
-/// Differences of energies below this share of their size are rounding.
+/// So are differences of energies below this share of their size.
 constexpr double kEnergyRounding = 1e-13;
 
 }  // namespace
@@ -38,7 +38,7 @@ double NewtonSolver::Start(const Field& y) {
   return energy_;
 }
 
-double NewtonSolver::Relative(double load) const {
+double NewtonSolver::RelativeResidual(double load) const {
   const double scale = norms_.terms + load;
   return scale > 0 ? norms_.residual / scale : 0;
 }
@@ -99,7 +99,7 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
   if (!std::isfinite(energy_)) return result;
   const int count = potential_.size();
   for (;;) {
-    result.relative_residual = Relative(load);
+    result.relative_residual = RelativeResidual(load);
     if (result.relative_residual <= tolerance_) {
       result.verdict = Verdict::kConverged;
       return result;
@@ -123,7 +123,7 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
         for (int j = 0; j < count; ++j) trial_[j] = y[j] + share * step_[j];
         const double energy = potential_.Evaluate(trial_, trial_gradient_, norms_);
         if (!std::isfinite(energy) || !std::isfinite(norms_.residual)) continue;
-        const double rounding = kEnergyRounding * (std::abs(energy_) + std::abs(energy));
+        const double rounding = energy_rounding_ + kEnergyRounding * (std::abs(energy_) + std::abs(energy));
         if (energy <= energy_ + kSufficientDescent * share * slope ||
             (energy <= energy_ + rounding && norms_.residual < old_norms.residual)) {
           accepted = true;
@@ -133,7 +133,8 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
     }
     if (!accepted) {
       norms_ = old_norms;
-      result.verdict = result.relative_residual < kUsableResidual ? Verdict::kNotConverged : Verdict::kFailed;
+      const bool usable = result.relative_residual < kUsableResidual || -slope < energy_rounding_;
+      result.verdict = usable ? Verdict::kNotConverged : Verdict::kFailed;
       return result;
     }
     y.swap(trial_);

@@ -16,6 +16,9 @@ class NewtonSolver {
 
   void TissueChanged(const Tissue& tissue);
 
+  /// Differences of energies that mean nothing, J.
+  void SetEnergyRounding(double rounding) { energy_rounding_ = rounding; }
+
   enum class Verdict {
     kConverged,
     kNotConverged,  // iterations ran out; y is better than the start
@@ -31,12 +34,17 @@ class NewtonSolver {
   /// `load`, N, below which nothing is worth moving.
   Result Minimise(Field& y, double load);
 
+  /// Of the last evaluation, see Minimise.
+  double RelativeResidual(double load) const;
+
+  /// The gradient at the y that Minimise left, N.
+  const Field& residual() const { return gradient_; }
+
   /// Evaluates y as the start of Minimise, which then need not: energy, J, infinite if y is unusable.
   double Start(const Field& y);
-  bool StartIsConverged(double load) const { return std::isfinite(energy_) && Relative(load) <= tolerance_; }
+  bool StartIsConverged(double load) const { return std::isfinite(energy_) && RelativeResidual(load) <= tolerance_; }
 
  private:
-  double Relative(double load) const;
   int SolveLinear(double relative_tolerance);
 
   IncrementalPotential& potential_;
@@ -47,7 +55,7 @@ class NewtonSolver {
   Field step_, residual_, scaled_, direction_, product_;
   std::vector<double> chunk_sums_;
   IncrementalPotential::Norms norms_;
-  double energy_ = 0;
+  double energy_ = 0, energy_rounding_ = 0;
 };
 
 }  // namespace meshless_cutting

@@ -44,7 +44,12 @@ int Obstacle::ChooseFace(const Eigen::Vector3d& x, int previous) const {
       closest = f;
     }
   }
-  return largest < 0 && previous != kNoFace ? previous : closest;
+  if (previous == kNoFace || faces_[previous].Gap(x) >= 0) return closest;
+  // Held by `previous`, unless the vertex has gone round an edge: out at the opposite face means it went through.
+  for (int f = 0; f < 6; ++f) {
+    if (f / 2 != previous / 2 && faces_[f].Gap(x) >= 0) return closest;
+  }
+  return previous;
 }
 
 }  // namespace meshless_cutting

@@ -16,8 +16,8 @@ struct HalfSpace {
 };
 
 /// A plane (one face) or a box (six) in the scene frame. A vertex is held by the face on whose side it was before the step, so
-/// that a fast vertex does not pass through a thin tray; one that is inside keeps its face, and if it never had one
-/// takes the closest.
+/// that a fast vertex does not pass through a thin tray; one that touched keeps its face until it leaves it, and one that is
+/// inside and never had a face takes the closest.
 class Obstacle {
  public:
   static constexpr int kNoFace = -1;

@@ -4,16 +4,22 @@
 
 namespace meshless_cutting {
 
+void StiffnessDampingTerm::TissueChanged(int particles) {
+  points_.Resize(tangent_);
+  way_.resize(particles);
+  force_.resize(particles);
+}
+
 void StiffnessDampingTerm::BeginStep(const StageMotion& motion) {
   rate_ = motion.rate;
+  elastic_.SetTangentFactor(1 + beta_ * rate_);
   still_ = motion.still;
   points_.Linearise(*motion.start, tangent_);
 }
 
 double StiffnessDampingTerm::Evaluate(const Field& y, Field& gradient) {
   const std::size_t count = y.size();
-  way_.resize(count);
-  force_.assign(count, Vector4());
+  std::fill(force_.begin(), force_.end(), Vector4());
   for (std::size_t j = 0; j < count; ++j) way_[j] = y[j] - (*still_)[j];
   points_.AddProduct(tangent_, beta_ * rate_, way_, force_);
   double energy = 0;

@@ -19,6 +19,7 @@ class TimeScheme {
 
   double inertia() const { return (1 - alpha_m_) / (beta_ * dt_ * dt_ * (1 - alpha_f_)); }  // 1/s^2
   double rate() const { return gamma_ / (beta_ * dt_); }  // 1/s: velocity at the stage = rate (y - Still)
+  double time_step_s() const { return dt_; }
   double stage() const { return 1 - alpha_f_; }           // the stage's place in the step
 
   // One particle, any vector type. Start of the step: x0, v0, a0.

@@ -37,7 +37,8 @@ struct Patch {
   bool is_hidden() const { return front + back <= kHidden * 2 * rays; }
 };
 
-/// Point `index` of a sequence that fills the unit cube evenly: multiples of 1/g, 1/g^2, 1/g^3 modulo 1 where g^4 = g + 1.
+/// Point `index` of a sequence that fills the unit cube evenly: multiples of 1/g, 1/g^2, 1/g^3 modulo 1 where g^4 = g
+/// + 1.
 Eigen::Vector3d EvenPoint(int index) {
   const Eigen::Vector3d step(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
   const Eigen::Vector3d x = Eigen::Vector3d::Constant(0.5) + (index + 1) * step;

@@ -93,8 +93,8 @@ struct SourceFile {
   std::map<std::string, int> lines;  // line, from 1, of each key, e.g. "object.mesh" or "tools[0].name"
 };
 
-/// The one line that reports a value of a file: "file:line: key `key`: value: expected ...". A key that the file does not
-/// name is reported at the nearest section above it. Empty `value`: left out.
+/// The one line that reports a value of a file: "file:line: key `key`: value: expected ...". A key that the file does
+/// not name is reported at the nearest section above it. Empty `value`: left out.
 std::string SceneMessage(const SourceFile& source, const std::string& key, const std::string& value,
                          const std::string& expected);
 

@@ -64,10 +64,20 @@ void VertexMapping::MapInside(int v) {
   Assign(v, chosen);
 }
 
+bool VertexMapping::IsJoined(int v) const {
+  const std::vector<int>& points = points_->OfVertex(anchor_[v]);
+  return std::binary_search(points.begin(), points.end(), point_[v]);
+}
+
+void VertexMapping::Refresh(int v) {
+  const size_t K = static_cast<size_t>(links_.support_size);
+  std::copy_n(&tissue_->point_particles[point_[v] * K], K, &links_.particles[v * K]);
+}
+
 void VertexMapping::Assign(int v, int point) {
   point_[v] = point;
+  Refresh(v);
   const size_t K = static_cast<size_t>(links_.support_size);
-  std::copy_n(&tissue_->point_particles[point * K], K, &links_.particles[v * K]);
   shape_->Values(points_->points()[point].cell, rest_[v], &links_.weights[v * K]);
 }
 

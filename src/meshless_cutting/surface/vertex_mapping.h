@@ -38,6 +38,11 @@ class VertexMapping {
   /// Maps vertex v on the point of the cell that it lies in, if the graph connects them, else on the nearest.
   void MapInside(int v);
 
+  /// The point of v has other particles (twins) than before: same weights, same place, other indices.
+  void Refresh(int v);
+  /// True while the graph joins v to its point.
+  bool IsJoined(int v) const;
+
   int size() const { return static_cast<int>(point_.size()); }
   int point(int v) const { return point_[v]; }
   int anchor(int v) const { return anchor_[v]; }

@@ -242,9 +242,8 @@ struct StVenantKirchhoffLaw {
     if (filtered) {
       // Psi'' = dF S : dF + a square. Lift S by its most negative eigenvalue (bounded by Samuelson's inequality).
       const T mean = (S[0] + S[1] + S[2]) * (1.0 / 3);
-      const T square = (S[0] * S[0] + S[1] * S[1] + S[2] * S[2]) + 2.0 * (S[3] * S[3] + S[4] * S[4] + S[5] * S[5]);
-      const T zero = mean - mean;
-      const T variance = Larger(square * (1.0 / 3) - mean * mean, zero);
+      const T x = S[0] - mean, y = S[1] - mean, z = S[2] - mean, zero = mean - mean;
+      const T variance = ((x * x + y * y + z * z) + 2.0 * (S[3] * S[3] + S[4] * S[4] + S[5] * S[5])) * (1.0 / 3);
       const T lift = Larger(Sqrt(2.0 * variance) - mean, zero);
       for (int a = 0; a < 3; ++a) S[a] += lift;
     }

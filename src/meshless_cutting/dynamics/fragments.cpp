@@ -1,0 +1,54 @@
+#include "dynamics/fragments.h"
+
+#include <algorithm>
+
+namespace meshless_cutting {
+
+void Fragments::Build(const Tissue& tissue) {
+  const int particles = tissue.particle_count(), K = tissue.support_size;
+  parent_.resize(particles);
+  for (int j = 0; j < particles; ++j) parent_[j] = j;
+  const auto find = [&](int j) {
+    while (parent_[j] != j) {
+      parent_[j] = parent_[parent_[j]];
+      j = parent_[j];
+    }
+    return j;
+  };
+  for (int p = 0; p < tissue.point_count(); ++p) {
+    const int* support = &tissue.point_particles[static_cast<std::size_t>(p) * K];
+    for (int k = 1; k < K; ++k) {
+      const int a = find(support[0]), b = find(support[k]);
+      parent_[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  of_particle.resize(particles);
+  held.clear();
+  for (int j = 0; j < particles; ++j) {
+    const int root = find(j);  // root <= j: numbered already unless it is j
+    if (root == j) {
+      of_particle[j] = count();
+      held.push_back(0);
+    } else {
+      of_particle[j] = of_particle[root];
+    }
+    if (tissue.particle_fixed[j]) held[of_particle[j]] = 1;
+  }
+  force_.resize(count());
+  weight_.resize(count());
+}
+
+void Fragments::Balance(const Field& residual, const std::vector<double>& inertia, Field& y) {
+  std::fill(force_.begin(), force_.end(), Vector4());
+  std::fill(weight_.begin(), weight_.end(), 0.0);
+  for (std::size_t j = 0; j < y.size(); ++j) {
+    force_[of_particle[j]] += residual[j];
+    weight_[of_particle[j]] += inertia[j];
+  }
+  for (std::size_t j = 0; j < y.size(); ++j) {
+    const int f = of_particle[j];
+    if (!held[f] && weight_[f] > 0 && inertia[j] > 0) y[j] += (-1 / weight_[f]) * force_[f];
+  }
+}
+
+}  // namespace meshless_cutting

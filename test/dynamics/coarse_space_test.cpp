@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+#include <set>
+
+#include "dynamics/aggregates.h"
+#include "dynamics/fragments.h"
+#include "dynamics/skyline_cholesky.h"
+#include "support/box_tissue.h"
+
+namespace meshless_cutting {
+namespace {
+
+TEST(SkylineCholesky, SolvesWhatADenseSolverSolves) {
+  const int n = 80;
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<int> first(n);
+  for (int i = 0; i < n; ++i) first[i] = std::max(0, i - 5 - i % 17);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = first[i]; j < i; ++j) A(i, j) = A(j, i) = uniform(generator);
+    A(i, i) = 30;
+  }
+  SkylineCholesky skyline;
+  skyline.Reset(first);
+  for (int i = 0; i < n; ++i) {
+    for (int j = first[i]; j <= i; ++j) skyline.At(i, j) = A(i, j);
+  }
+  skyline.Factor();
+  Eigen::VectorXd b(n);
+  for (int i = 0; i < n; ++i) b[i] = uniform(generator);
+  Eigen::VectorXd x = b;
+  skyline.Solve(x.data());
+  EXPECT_LT((A * x - b).norm(), 1e-13 * n);
+}
+
+TEST(SkylineCholesky, TakesOutRowsWithoutPivot) {
+  SkylineCholesky skyline;
+  skyline.Reset({0, 0, 0});
+  skyline.At(0, 0) = 4;  // row 1 stays zero
+  skyline.At(2, 2) = 9;
+  skyline.Factor();
+  double x[3] = {4, 5, 9};
+  skyline.Solve(x);
+  EXPECT_DOUBLE_EQ(x[0], 1);
+  EXPECT_EQ(x[1], 0);
+  EXPECT_DOUBLE_EQ(x[2], 1);
+}
+
+/// Two boxes side by side in one tissue, joined nowhere though their particles coincide: a cut through.
+Tissue CutInTwo() {
+  BoxTissueConfig box;
+  box.cells = {8, 4, 4};
+  box.size = {0.08, 0.04, 0.04};
+  Tissue tissue = MakeBoxTissue(box);
+  std::vector<int> twin(tissue.particle_count(), -1);
+  for (int p = 0; p < tissue.point_count(); ++p) {
+    if (tissue.point_rest[p].x() < 0.03) continue;
+    for (int k = 0; k < 8; ++k) {
+      int& j = tissue.point_particles[8 * p + k];
+      if (std::abs(tissue.particle_rest[j].x() - 0.03) > 1e-9) continue;
+      if (twin[j] < 0) {
+        twin[j] = tissue.particle_count();
+        tissue.particle_rest.push_back(Eigen::Vector3d(tissue.particle_rest[j]));
+        tissue.particle_mass.push_back(0.5 * tissue.particle_mass[j]);
+        tissue.particle_mass[j] *= 0.5;
+        tissue.particle_fixed.push_back(0);
+      }
+      j = twin[j];
+    }
+  }
+  return tissue;
+}
+
+TEST(Fragments, FindsThePieces) {
+  Tissue tissue = CutInTwo();
+  tissue.particle_fixed[0] = 1;
+  Fragments fragments;
+  fragments.Build(tissue);
+  ASSERT_EQ(fragments.count(), 2);
+  EXPECT_EQ(fragments.held[fragments.of_particle[0]], 1);
+  EXPECT_EQ(fragments.held[1 - fragments.of_particle[0]], 0);
+}
+
+TEST(Aggregates, CoverWhatMovesAndSpanNoCut) {
+  Tissue tissue = CutInTwo();
+  std::vector<double> free(tissue.particle_count(), 1);
+  free[5] = 0;
+  Fragments fragments;
+  fragments.Build(tissue);
+  Aggregates aggregates;
+  aggregates.Build(tissue, free, 6);
+  EXPECT_GT(aggregates.count(), 3);
+  EXPECT_EQ(aggregates.of_particle[5], -1);
+  EXPECT_EQ(aggregates.begin.back(), tissue.particle_count() - 1);
+  for (int a = 0; a < aggregates.count(); ++a) {
+    std::set<int> pieces;
+    Eigen::Matrix4d product = Eigen::Matrix4d::Zero();
+    for (int i = aggregates.begin[a]; i < aggregates.begin[a + 1]; ++i) {
+      const int j = aggregates.particles[i];
+      EXPECT_EQ(aggregates.of_particle[j], a);
+      pieces.insert(fragments.of_particle[j]);
+      const Eigen::Map<const Eigen::Vector4d> b(&aggregates.basis[j].x);
+      product += b * b.transpose();
+    }
+    EXPECT_EQ(pieces.size(), 1u);
+    // Orthonormal, but for the functions that a flat aggregate does without.
+    EXPECT_NEAR(product(0, 0), 1, 1e-12);
+    for (int c = 1; c < 4; ++c) EXPECT_LT(std::min(std::abs(product(c, c)), std::abs(product(c, c) - 1)), 1e-6);
+    EXPECT_LT((product - Eigen::Matrix4d(product.diagonal().asDiagonal())).norm(), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace meshless_cutting

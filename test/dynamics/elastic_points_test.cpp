@@ -1,0 +1,255 @@
+#include "dynamics/elastic_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "support/box_tissue.h"
+
+namespace meshless_cutting {
+namespace {
+
+constexpr MaterialModel kModels[] = {MaterialModel::kStableNeoHookean, MaterialModel::kNeoHookean,
+                                     MaterialModel::kStVenantKirchhoff, MaterialModel::kLinear};
+
+/// Box tissues whose points take each of the three loops.
+Tissue MakeTissue(SupportShape shape) {
+  BoxTissueConfig config;
+  config.cells = {5, 4, 3};
+  config.size = {0.05, 0.044, 0.036};
+  Tissue tissue = MakeBoxTissue(config);
+  if (shape == SupportShape::kBox) {
+    // Off the centre of the cell: trilinear gradients there are the centre's plus hourglass modes.
+    for (int p = 0; p < tissue.point_count(); ++p) {
+      for (int k = 0; k < 8; ++k) {
+        for (int i = 0; i < 3; ++i) {
+          for (int n = 0; n < 4; ++n) {
+            tissue.point_gradients[8 * p + k][i] += 2.0 * std::sin(p + 3 * n + i) * Hadamard(kHourglassModes[n], k);
+          }
+        }
+      }
+    }
+  }
+  return shape == SupportShape::kGeneral ? WidenSupports(tissue, 20) : tissue;
+}
+
+class ElasticPointsTest : public testing::TestWithParam<SupportShape> {
+ protected:
+  ElasticPointsTest() : tissue_(MakeTissue(GetParam())), pool_(1) {}
+
+  Field Positions(const Eigen::Matrix3d& F, const Eigen::Vector3d& t = Eigen::Vector3d::Zero()) const {
+    Field x;
+    for (const Eigen::Vector3d& X : tissue_.particle_rest) x.push_back(Vector4::From(F * X + t));
+    return x;
+  }
+  Field Random(double size) {
+    Field x(tissue_.particle_count());
+    for (Vector4& v : x) v = {size * uniform_(generator_), size * uniform_(generator_), size * uniform_(generator_), 0};
+    return x;
+  }
+  Field Sum(const Field& a, const Field& b, double s) const {
+    Field sum = a;
+    for (std::size_t j = 0; j < a.size(); ++j) sum[j] += s * b[j];
+    return sum;
+  }
+  double Inner(const Field& a, const Field& b) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < a.size(); ++j) sum += Dot(a[j], b[j]);
+    return sum;
+  }
+  Field Zero() const { return Field(tissue_.particle_count()); }
+
+  Tissue tissue_;
+  ThreadPool pool_;
+  std::mt19937 generator_{3};
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+TEST_P(ElasticPointsTest, SortsPointsByShape) {
+  PointGroups groups;
+  groups.Build(tissue_, 1e3);
+  for (int shape = 0; shape < kSupportShapes; ++shape) {
+    EXPECT_EQ(groups.groups[shape].batches > 0, shape == static_cast<int>(GetParam()));
+  }
+}
+
+TEST_P(ElasticPointsTest, AffineMapsHaveTheEnergyOfTheirStrainAndNoForceInside) {
+  Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+  F << 1.1, 0.2, 0, -0.1, 0.95, 0.05, 0, 0.1, 1.02;
+  double volume = 0;
+  for (double v : tissue_.point_volume) volume += v;
+  for (MaterialModel model : kModels) {
+    const MaterialConfig config{model, 1e4, 0.4, 1000};
+    ElasticPoints points(config, pool_);
+    points.TissueChanged(tissue_);
+    Field gradient = Zero();
+    const double energy = points.Evaluate(Positions(F, {1, 2, 3}), gradient);
+    EXPECT_NEAR(energy, volume * MakeMaterial(config)->Energy(F), 1e-10 * energy);
+    if (GetParam() != SupportShape::kBoxCentre) continue;  // the others are not integrated exactly at the rim
+    for (int j = 0; j < tissue_.particle_count(); ++j) {
+      const Eigen::Vector3d X = tissue_.particle_rest[j];
+      const bool inside = (X.array() > 1e-6).all() && ((Eigen::Vector3d(0.05, 0.044, 0.036) - X).array() > 1e-6).all();
+      if (!inside) continue;
+      EXPECT_LT(gradient[j].vector().norm(), 1e-12 * energy / 0.01);
+    }
+  }
+}
+
+TEST_P(ElasticPointsTest, ForcesAndTorquesSumToZero) {
+  for (MaterialModel model : kModels) {
+    ElasticPoints points({model, 1e4, 0.4, 1000}, pool_);
+    points.TissueChanged(tissue_);
+    const Field x = Sum(Positions(Eigen::Matrix3d::Identity()), Random(1), 1e-3);
+    Field gradient = Zero();
+    points.Evaluate(x, gradient);
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
+    double size = 0;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      force += gradient[j].vector();
+      torque += x[j].vector().cross(gradient[j].vector());
+      size += gradient[j].vector().norm();
+    }
+    EXPECT_LT(force.norm(), 1e-13 * size);
+    if (model == MaterialModel::kLinear) continue;  // not objective
+    EXPECT_LT(torque.norm(), 1e-13 * size);
+  }
+}
+
+TEST_P(ElasticPointsTest, GradientAndProductAreDerivatives) {
+  for (MaterialModel model : kModels) {
+    ElasticPoints points({model, 1e4, 0.4, 1000}, pool_);
+    points.TissueChanged(tissue_);
+    // About the rest state the filter changes next to nothing.
+    const Field x = Sum(Positions(Eigen::Matrix3d::Identity()), Random(1), 1e-8), d = Random(1);
+    const double h = 1e-6;
+    Field scratch = Zero(), plus = Zero(), minus = Zero(), product = Zero(), gradient = Zero();
+    const double up = points.Evaluate(Sum(x, d, h), plus), down = points.Evaluate(Sum(x, d, -h), minus);
+    points.Evaluate(x, gradient);
+    PointTangent tangent;
+    points.Resize(tangent);
+    points.Linearise(x, tangent);
+    points.AddProduct(tangent, 2, d, product);
+    const Field slope = Sum(plus, minus, -1);
+    EXPECT_NEAR(Inner(gradient, d), (up - down) / (2 * h), 1e-5 * Inner(product, d) * h + 1e-9);
+    EXPECT_LT(std::sqrt(Inner(Sum(slope, product, -h), Sum(slope, product, -h))), 1e-3 * std::sqrt(Inner(slope, slope)));
+  }
+}
+
+TEST_P(ElasticPointsTest, ProductIsSymmetricPositiveAndMatchesItsDiagonalAndItsCoarseMatrix) {
+  for (MaterialModel model : kModels) {
+    ElasticPoints points({model, 1e4, 0.4, 1000}, pool_);
+    points.TissueChanged(tissue_);
+    const Field x = Sum(Positions(Eigen::Matrix3d::Identity()), Random(1), 1e-3);
+    PointTangent tangent;
+    points.Resize(tangent);
+    points.Linearise(x, tangent);
+    const auto times = [&](const Field& p) {
+      Field q = Zero();
+      points.AddProduct(tangent, 1, p, q);
+      return q;
+    };
+    const Field a = Random(1), b = Random(1), Ha = times(a), Hb = times(b);
+    EXPECT_NEAR(Inner(a, Hb), Inner(b, Ha), 1e-11 * std::abs(Inner(a, Ha)));
+    EXPECT_GT(Inner(a, Ha), 0);
+
+    BlockField blocks(x.size());
+    points.AddDiagonal(tangent, 1, blocks);
+    for (int j : {0, 7, 31}) {
+      Field p = Zero();
+      p[j].y = 1;
+      const Field q = times(p);
+      EXPECT_NEAR(q[j].y, blocks[j].yy, 1e-11 * blocks[j].yy);
+      EXPECT_NEAR(q[j].x, blocks[j].xy, 1e-11 * blocks[j].yy);
+      EXPECT_NEAR(q[j].z, blocks[j].yz, 1e-11 * blocks[j].yy);
+    }
+
+    CoarseMatrix coarse;
+    coarse.TissueChanged(tissue_, std::vector<double>(x.size(), 1), 4);
+    coarse.Clear();
+    points.AddCoarse(tangent, 1, coarse);
+    // Z e_u for some unknowns u, and Z^T H Z e_u against the matrix; the inertia of 1 makes it solvable.
+    const Aggregates& aggregates = coarse.aggregates();
+    ASSERT_GT(aggregates.count(), 1);
+    for (int a_ = 0; a_ < aggregates.count(); ++a_) {
+      for (int c = 0; c < 4; ++c) {
+        for (int d = 0; d <= c; ++d) {
+          const double unit[9] = {c == d ? 1.0 : 0.0, 0, 0, 0, c == d ? 1.0 : 0.0, 0, 0, 0, c == d ? 1.0 : 0.0};
+          coarse.Add(a_, c, a_, d, unit);
+        }
+      }
+    }
+    coarse.Factor();
+    for (int unknown : {0, 5, 13, coarse.size() - 1}) {
+      Field p = Zero();
+      for (std::size_t j = 0; j < x.size(); ++j) {
+        if (aggregates.of_particle[j] != unknown / 12) continue;
+        const double value = (&aggregates.basis[j].x)[unknown % 12 / 3];
+        (&p[j].x)[unknown % 3] = value;
+      }
+      const Field q = times(p);
+      std::vector<double> column(coarse.size());
+      for (std::size_t j = 0; j < x.size(); ++j) {
+        for (int i = 0; i < 12; ++i) {
+          column[12 * aggregates.of_particle[j] + i] += (&aggregates.basis[j].x)[i / 3] * (&q[j].x)[i % 3];
+        }
+      }
+      column[unknown] += 1;
+      coarse.Solve(column.data());
+      for (int i = 0; i < coarse.size(); ++i) EXPECT_NEAR(column[i], i == unknown, 1e-8);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllShapes, ElasticPointsTest,
+                         testing::Values(SupportShape::kBoxCentre, SupportShape::kBox, SupportShape::kGeneral));
+
+/// Every processor gives the same bits.
+TEST(PointKernels, InstructionSetsAgreeToTheBit) {
+  std::vector<const PointKernelTable*> tables{&kPointKernelsBaseline};
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) tables.push_back(&kPointKernelsAvx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) tables.push_back(&kPointKernelsAvx512);
+#endif
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int shape = 0; shape < kSupportShapes; ++shape) {
+    const Tissue tissue = MakeTissue(static_cast<SupportShape>(shape));
+    PointGroups groups;
+    groups.Build(tissue, 1e3);
+    Field x;
+    for (const Eigen::Vector3d& X : tissue.particle_rest) {
+      x.push_back(Vector4::From(X + 1e-3 * Eigen::Vector3d(uniform(generator), uniform(generator), uniform(generator))));
+    }
+    for (int model = 0; model < 4; ++model) {
+      Field first;
+      double first_energy = 0;
+      for (const PointKernelTable* table : tables) {
+        const PointKernels& kernels = (*table)[model][shape];
+        Field slots(3 * groups.slot_count);
+        KernelArguments arguments;
+        arguments.group = &groups.groups[shape];
+        arguments.chunk = groups.chunks[0];
+        arguments.slot_count = groups.slot_count;
+        arguments.lame = LameConstantsOf({kModels[model], 1e4, 0.45, 1000});
+        arguments.field = x.data();
+        AlignedVector<double> tangent(arguments.group->batches * kernels.tangent_size * kLanes);
+        arguments.tangent = tangent.data();
+        arguments.slots = slots.data();
+        const double energy = kernels.evaluate(arguments);
+        kernels.linearise(arguments);
+        arguments.slots = slots.data() + groups.slot_count;
+        kernels.product(arguments);
+        if (first.empty()) {
+          first = slots;
+          first_energy = energy;
+        }
+        EXPECT_EQ(energy, first_energy);
+        EXPECT_EQ(std::memcmp(slots.data(), first.data(), 2 * groups.slot_count * sizeof(Vector4)), 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshless_cutting

@@ -1,0 +1,189 @@
+// States and materials that break solvers: finite throughout, and back to shape.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "dynamics/dynamics.h"
+#include "support/box_tissue.h"
+
+namespace meshless_cutting {
+namespace {
+
+bool IsFinite(const TissueState& state) {
+  for (std::size_t j = 0; j < state.position.size(); ++j) {
+    if (!state.position[j].allFinite() || !state.velocity[j].allFinite() || !state.acceleration[j].allFinite()) return false;
+  }
+  return true;
+}
+
+BoxTissueConfig Box(bool clamped) {
+  BoxTissueConfig config;
+  config.cells = {6, 4, 4};
+  config.size = {0.06, 0.04, 0.04};
+  config.clamp_x0 = clamped;
+  return config;
+}
+
+struct Start {
+  const char* name;
+  Eigen::Vector3d (*place)(const Eigen::Vector3d& X, std::mt19937& generator);
+};
+
+double Uniform(std::mt19937& generator) { return std::uniform_real_distribution<double>(-1, 1)(generator); }
+Eigen::Vector3d Noise(std::mt19937& generator) { return {Uniform(generator), Uniform(generator), Uniform(generator)}; }
+
+class DegenerateStartTest : public testing::TestWithParam<Start> {};
+
+TEST_P(DegenerateStartTest, ComesBackToShape) {
+  for (const Integrator integrator : {Integrator::kGeneralizedAlpha, Integrator::kImplicitEuler}) {
+    const Tissue tissue = MakeBoxTissue(Box(false));
+    DynamicsConfig config;
+    config.material = {MaterialModel::kStableNeoHookean, 1e4, 0.45, 1000};
+    config.damping = DampingConfig{1, 0.02};
+    config.solver = {integrator, 1e-3, 8, 1};
+    Dynamics dynamics(config, tissue);
+    TissueState state = RestState(tissue);
+    std::mt19937 generator(11);
+    for (Eigen::Vector3d& x : state.position) x = GetParam().place(x, generator);
+    double first = 0;
+    AdvanceResult result;
+    for (int n = 0; n < 900; ++n) {
+      result = dynamics.Advance(tissue, {}, state);
+      ASSERT_TRUE(IsFinite(state)) << "step " << n;
+      if (n == 0) first = result.elastic_j;
+    }
+    EXPECT_LT(result.elastic_j, 1e-3 * first);
+    // Shape, not only energy: distances are those at rest.
+    const double way = (tissue.particle_rest.back() - tissue.particle_rest.front()).norm();
+    EXPECT_NEAR((state.position.back() - state.position.front()).norm(), way, 0.02 * way);
+  }
+}
+
+// Exactly flat, straight or collapsed states are unstable equilibria by symmetry; a breath of noise is what any scene has.
+INSTANTIATE_TEST_SUITE_P(
+    Smith2018, DegenerateStartTest,
+    testing::Values(
+        Start{"plane", [](const Eigen::Vector3d& X, std::mt19937& g) {
+                return Eigen::Vector3d(X.x(), X.y(), 1e-6 * Uniform(g)); }},
+        Start{"line", [](const Eigen::Vector3d& X, std::mt19937& g) {
+                return Eigen::Vector3d(X.x(), 1e-6 * Uniform(g), 1e-6 * Uniform(g)); }},
+        Start{"point", [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(1e-4 * Noise(g)); }},
+        Start{"scramble", [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(0.03 * Noise(g)); }},
+        Start{"reflection", [](const Eigen::Vector3d& X, std::mt19937& g) {
+                return Eigen::Vector3d(Eigen::Vector3d(X.x(), X.y(), -X.z()) + 1e-6 * Noise(g)); }}),
+    [](const auto& parameter) { return parameter.param.name; });
+
+struct Extreme {
+  double youngs_modulus_pa, poisson_ratio, time_step_s;
+};
+
+class ExtremeTest : public testing::TestWithParam<Extreme> {};
+
+TEST_P(ExtremeTest, StaysFinite) {
+  const Tissue tissue = MakeBoxTissue(Box(true));
+  for (const MaterialModel model : {MaterialModel::kStableNeoHookean, MaterialModel::kNeoHookean}) {
+    DynamicsConfig config;
+    config.time_step_s = GetParam().time_step_s;
+    config.material = {model, GetParam().youngs_modulus_pa, GetParam().poisson_ratio, 1000};
+    config.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);
+    config.solver.threads = 1;
+    Dynamics dynamics(config, tissue);
+    TissueState state = RestState(tissue);
+    for (int n = 0; n < 30; ++n) {
+      const AdvanceResult result = dynamics.Advance(tissue, {}, state);
+      ASSERT_TRUE(IsFinite(state)) << "step " << n;
+      ASSERT_TRUE(std::isfinite(result.kinetic_j + result.elastic_j + result.relative_residual));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Corners, ExtremeTest,
+                         testing::Values(Extreme{1, 0.3, 1.0 / 60}, Extreme{1, 0.4999, 0.1}, Extreme{1e3, 0.49, 1.0 / 60},
+                                         Extreme{1e5, 0.4999, 1.0 / 60}, Extreme{1e7, 0.49, 1e-3},
+                                         Extreme{1e9, 0.3, 1.0 / 60}, Extreme{1e9, 0.4999, 0.1}));
+
+TEST(Robustness, ClampDraggedAtTenMetresPerSecondComesBack) {
+  const BoxTissueConfig box = Box(true);
+  const Tissue tissue = MakeBoxTissue(box);
+  DynamicsConfig config;
+  config.material = {MaterialModel::kStableNeoHookean, 1e4, 0.45, 1000};
+  config.damping = DampingConfig{1, 0.02};
+  config.solver.threads = 1;
+  Dynamics dynamics(config, tissue);
+  TissueState state = RestState(tissue);
+  for (int n = 0; n < 300; ++n) {
+    for (int j = 0; j < tissue.particle_count(); ++j) {
+      if (n < 30 && tissue.particle_fixed[j]) state.position[j] += (n % 2 == 0 ? 1 : -1) * Eigen::Vector3d(0, 10.0 / 60, 0);
+    }
+    dynamics.Advance(tissue, {}, state);
+    ASSERT_TRUE(IsFinite(state));
+  }
+  for (int j = 0; j < tissue.particle_count(); ++j) {
+    EXPECT_LT((state.position[j] - tissue.particle_rest[j]).norm(), 1e-4);
+  }
+}
+
+TEST(Robustness, PoisonedInputIsReplacedByTheLastGoodPositions) {
+  const Tissue tissue = MakeBoxTissue(Box(true));
+  DynamicsConfig config;
+  config.material = {MaterialModel::kStableNeoHookean, 1e4, 0.45, 1000};
+  config.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);
+  config.solver.threads = 1;
+  Dynamics dynamics(config, tissue);
+  TissueState state = RestState(tissue);
+  dynamics.Advance(tissue, {}, state);
+  state.position[7].y() = std::numeric_limits<double>::quiet_NaN();
+  state.velocity[9].x() = std::numeric_limits<double>::infinity();
+  dynamics.Advance(tissue, {}, state);
+  EXPECT_TRUE(IsFinite(state));
+}
+
+TEST(Robustness, AnUnusableStartIsFrozenOrRepairedNeverNaN) {
+  // Log neo-Hookean has no energy for inverted cells: nothing can be done but to keep still, and to say so.
+  const Tissue tissue = MakeBoxTissue(Box(false));
+  DynamicsConfig config;
+  config.material = {MaterialModel::kNeoHookean, 1e4, 0.45, 1000};
+  config.solver.threads = 1;
+  Dynamics dynamics(config, tissue);
+  TissueState state = RestState(tissue);
+  for (Eigen::Vector3d& x : state.position) x.z() = -x.z();
+  for (Eigen::Vector3d& v : state.velocity) v = Eigen::Vector3d(1, 1, 1);
+  const AdvanceResult result = dynamics.Advance(tissue, {}, state);
+  EXPECT_TRUE(result.status & kStepFrozen);
+  EXPECT_TRUE(IsFinite(state));
+  for (std::size_t j = 0; j < state.velocity.size(); ++j) EXPECT_EQ(state.velocity[j].norm(), 0);
+}
+
+/// A particle that all its points have left, light twins, and a fragment of one point.
+TEST(Robustness, OrphansAndCrumbsFallWithTheRest) {
+  Tissue tissue = MakeBoxTissue(Box(false));
+  // The last cell becomes a fragment of one thousandth of a cell with eight twins; its far corner particle is left without mass.
+  const int last = tissue.point_count() - 1;
+  tissue.point_volume[last] *= 1e-3;
+  for (int k = 0; k < 8; ++k) {
+    int& j = tissue.point_particles[8 * last + k];
+    const double share = 1000 * 1e-6 / 8;
+    tissue.particle_mass[j] = std::max(0.0, tissue.particle_mass[j] - share);
+    if (tissue.particle_mass[j] < 1e-12) tissue.particle_mass[j] = 0;
+    tissue.particle_rest.push_back(Eigen::Vector3d(tissue.particle_rest[j]));
+    tissue.particle_mass.push_back(1e-3 * share);
+    tissue.particle_fixed.push_back(0);
+    j = tissue.particle_count() - 1;
+  }
+  DynamicsConfig config;
+  config.material = {MaterialModel::kStableNeoHookean, 1e4, 0.45, 1000};
+  config.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);
+  config.solver.threads = 1;
+  Dynamics dynamics(config, tissue);
+  TissueState state = RestState(tissue);
+  for (int n = 0; n < 60; ++n) dynamics.Advance(tissue, {}, state);
+  for (int j = 0; j < tissue.particle_count(); ++j) {
+    if (tissue.particle_mass[j] == 0) continue;
+    EXPECT_NEAR(state.position[j].z() - tissue.particle_rest[j].z(), -0.5 * 9.81, 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace meshless_cutting

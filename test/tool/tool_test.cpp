@@ -1,0 +1,120 @@
+// Samples in, blade windows out: no gap, no jump cut, nothing from bad samples.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tool/tool.h"
+
+namespace meshless_cutting {
+namespace {
+
+ToolConfig Config() {
+  ToolConfig config;
+  config.cutting_edge = {{0, 0, 0}, {0, 0, 0.03}};
+  config.pose_source = TopicPoseSource{"scalpel"};
+  config.max_speed_m_s = 2;
+  config.timeout_s = 0.1;
+  return config;
+}
+
+ToolSample At(double time_s, double x) {
+  ToolSample sample;
+  sample.time_s = time_s;
+  sample.position_m[0] = x;
+  return sample;
+}
+
+TEST(Tool, IsInactiveBeforeTheFirstSample) {
+  Tool tool(Config());
+  EXPECT_TRUE(tool.Move(0, 0.02).empty());
+  EXPECT_FALSE(tool.pose());
+}
+
+TEST(Tool, ChainsWindowsThroughEverySampleAndFromFrameToFrame) {
+  Tool tool(Config());
+  for (int i = 1; i <= 20; ++i) ASSERT_EQ(tool.Add(At(0.002 * i, 0.001 * i)), SampleVerdict::kAccepted);
+  std::vector<Eigen::Vector3d> last;
+  double last_t = 0;
+  int windows = 0;
+  for (int frame = 0; frame < 2; ++frame) {
+    const BladeMotion motion = tool.Move(0.02 * frame, 0.02 * (frame + 1));
+    for (const BladeWindow& window : motion) {
+      if (!last.empty()) {
+        EXPECT_EQ(window.points_t0, last);
+        EXPECT_EQ(window.t0, frame > 0 && &window == &motion[0] ? 0 : last_t);
+      }
+      last = window.points_t1;
+      last_t = window.t1;
+      ++windows;
+    }
+    EXPECT_EQ(motion.back().t1, 1);
+  }
+  EXPECT_EQ(windows, 19);
+  EXPECT_DOUBLE_EQ(last[0][0], 0.020);
+}
+
+TEST(Tool, RestsAsAWindowThatStillCuts) {
+  Tool tool(Config());
+  tool.Add(At(0.01, 0.1));
+  tool.Move(0, 0.02);
+  const BladeMotion motion = tool.Move(0.02, 0.04);
+  ASSERT_EQ(motion.size(), 1u);
+  EXPECT_EQ(motion[0].points_t0, motion[0].points_t1);
+  EXPECT_EQ(motion[0].t0, 0);
+  EXPECT_EQ(motion[0].t1, 1);
+}
+
+TEST(Tool, NeverCutsAlongAJump) {
+  Tool tool(Config());
+  tool.Add(At(0.01, 0));
+  tool.Move(0, 0.02);
+  EXPECT_EQ(tool.Add(At(0.03, 1.0)), SampleVerdict::kJump);
+  const BladeMotion motion = tool.Move(0.02, 0.04);
+  EXPECT_EQ(tool.jumps(), 1);
+  for (const BladeWindow& window : motion) EXPECT_EQ(window.points_t0[0][0], 1.0);
+}
+
+TEST(Tool, IsInactiveWhenSamplesStopAndStartsAnewWhenTheyReturn) {
+  Tool tool(Config());
+  tool.Add(At(0.01, 0));
+  tool.Move(0, 0.02);
+  EXPECT_FALSE(tool.Move(0.02, 0.10).empty());
+  EXPECT_TRUE(tool.Move(0.10, 0.30).empty());
+  EXPECT_TRUE(tool.Move(0.30, 0.50).empty());
+  tool.Add(At(0.6, 0.05));
+  const BladeMotion motion = tool.Move(0.5, 0.7);
+  for (const BladeWindow& window : motion) EXPECT_EQ(window.points_t0[0][0], 0.05);
+}
+
+TEST(Tool, RefusesBadSamplesAndKeepsItsState) {
+  Tool tool(Config());
+  ASSERT_EQ(tool.Add(At(0.01, 0)), SampleVerdict::kAccepted);
+  EXPECT_EQ(tool.Add(At(0.01, 0)), SampleVerdict::kDuplicate);
+  EXPECT_EQ(tool.Add(At(0.005, 0)), SampleVerdict::kBackInTime);
+  EXPECT_EQ(tool.Add(At(0.02, std::numeric_limits<double>::quiet_NaN())), SampleVerdict::kNotFinite);
+  EXPECT_EQ(tool.Add(At(std::numeric_limits<double>::infinity(), 0)), SampleVerdict::kNotFinite);
+  ToolSample zero = At(0.02, 0);
+  zero.orientation_xyzw.setZero();
+  EXPECT_EQ(tool.Add(zero), SampleVerdict::kZeroQuaternion);
+  ToolSample scaled = At(0.02, 0);
+  scaled.orientation_xyzw *= 3;
+  EXPECT_EQ(tool.Add(scaled), SampleVerdict::kAccepted);
+  const BladeMotion motion = tool.Move(0, 0.02);
+  EXPECT_NEAR(motion.back().points_t1[1][2], 0.03, 1e-15);
+}
+
+TEST(Tool, BendsItsEdgeFromTheNextFrameOn) {
+  Tool tool(Config());
+  tool.Add(At(0.01, 0));
+  tool.Move(0, 0.02);
+  EXPECT_FALSE(tool.SetEdge({{0, 0, 0}}));
+  EXPECT_FALSE(tool.SetEdge({{0, 0, 0}, {0, 0, std::numeric_limits<double>::quiet_NaN()}}));
+  EXPECT_TRUE(tool.SetEdge({{0, 0, 0}, {0.01, 0, 0.03}}));
+  const BladeMotion motion = tool.Move(0.02, 0.04);
+  ASSERT_EQ(motion.size(), 1u);
+  EXPECT_EQ(motion[0].points_t0[1], Eigen::Vector3d(0, 0, 0.03));
+  EXPECT_EQ(motion[0].points_t1[1], Eigen::Vector3d(0.01, 0, 0.03));
+}
+
+}  // namespace
+}  // namespace meshless_cutting
