@@ -12,13 +12,16 @@ namespace {
 // A paused simulation is still drawn for an rviz that starts late.
 constexpr double kIdleMarkerPeriod = 1;  // s
 
+// Frames that a slow receiver, or a burst of frames stepped by hand, may be behind before any is dropped.
+constexpr int kQueue = 200;
+
 }  // namespace
 
 Publishers::Publishers(ros::NodeHandle nh, std::function<void()> every_second)
-    : topology_(nh.advertise<SurfaceTopology>(kTopologyTopic, 10, true)),
-      positions_(nh.advertise<SurfacePositions>(kPositionsTopic, 10)),
+    : topology_(nh.advertise<SurfaceTopology>(kTopologyTopic, kQueue, true)),
+      positions_(nh.advertise<SurfacePositions>(kPositionsTopic, kQueue)),
       cut_events_(nh.advertise<CutEventMsg>(kCutEventsTopic, 1000)),
-      statistics_(nh.advertise<StepStatisticsMsg>(kStatisticsTopic, 100)),
+      statistics_(nh.advertise<StepStatisticsMsg>(kStatisticsTopic, kQueue)),
       session_(nh.advertise<SessionInfo>(kSessionTopic, 1, true)),
       marker_(nh.advertise<visualization_msgs::Marker>(kMarkerTopic, 50)),
       mapping_marker_(nh.advertise<visualization_msgs::MarkerArray>(kMappingMarkerTopic, 2)),

@@ -13,6 +13,8 @@ using Color = Eigen::Vector3f;
 
 const Color kSkinColor(0.50f, 0.13f, 0.10f);     // capsule of a liver
 const Color kCutFaceColor(0.98f, 0.55f, 0.52f);  // fresh parenchyma
+constexpr float kSkinAmbient = 0.30f;
+constexpr float kCutFaceAmbient = 0.50f;  // lips that face each other light each other
 const Color kHeldColor(0.25f, 0.55f, 0.85f);
 
 Eigen::Vector3f Vertex(const std::vector<float>& xyz, std::size_t i) {
@@ -20,11 +22,11 @@ Eigen::Vector3f Vertex(const std::vector<float>& xyz, std::size_t i) {
 }
 
 // Daylight from above, a lamp at the surgeon's left shoulder, a weak fill from behind, and the gloss of a wet surface.
-Color Lit(const Color& color, const Eigen::Vector3f& normal) {
+Color Lit(const Color& color, float ambient, const Eigen::Vector3f& normal) {
   static const Eigen::Vector3f lamp = Eigen::Vector3f(-0.45f, -0.55f, 0.75f).normalized();
   static const Eigen::Vector3f fill = Eigen::Vector3f(0.7f, 0.5f, 0.1f).normalized();
   static const Eigen::Vector3f half = (lamp + Eigen::Vector3f(0.1f, -0.75f, 0.65f).normalized()).normalized();
-  const float sky = 0.30f + 0.14f * normal.z();
+  const float sky = ambient + 0.14f * normal.z();
   const float diffuse = 0.85f * std::max(0.0f, normal.dot(lamp)) + 0.22f * std::max(0.0f, normal.dot(fill));
   const float gloss = 0.30f * std::pow(std::max(0.0f, normal.dot(half)), 40.0f);
   return ((sky + diffuse) * color + Color::Constant(gloss)).cwiseMin(1.0f).cwiseMax(0.0f);
@@ -75,7 +77,8 @@ visualization_msgs::Marker SurfaceMarker(const SurfaceTopology& topology, const 
   for (int region = 0; region < 2; ++region) {
     colors[region].resize(vertices);
     for (std::size_t v = 0; v < vertices; ++v) {
-      colors[region][v] = ToColor(Lit(region == 0 ? kSkinColor : kCutFaceColor, normals[region][v].normalized()));
+      colors[region][v] = ToColor(Lit(region == 0 ? kSkinColor : kCutFaceColor,
+                                      region == 0 ? kSkinAmbient : kCutFaceAmbient, normals[region][v].normalized()));
     }
   }
   visualization_msgs::Marker marker = NewMarker(positions, "surface", visualization_msgs::Marker::TRIANGLE_LIST);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "dynamics/dynamics.h"
+#include "dynamics/elastic_points.h"
 #include "support/box_tissue.h"
 
 namespace meshless_cutting {
@@ -28,6 +30,7 @@ BoxTissueConfig Box(bool clamped) {
 
 struct Start {
   const char* name;
+  bool untangles;  // see below
   Eigen::Vector3d (*place)(const Eigen::Vector3d& X, std::mt19937& generator);
 };
 
@@ -36,7 +39,7 @@ Eigen::Vector3d Noise(std::mt19937& generator) { return {Uniform(generator), Uni
 
 class DegenerateStartTest : public testing::TestWithParam<Start> {};
 
-TEST_P(DegenerateStartTest, ComesBackToShape) {
+TEST_P(DegenerateStartTest, StaysFiniteAndComesBack) {
   for (const Integrator integrator : {Integrator::kGeneralizedAlpha, Integrator::kImplicitEuler}) {
     const Tissue tissue = MakeBoxTissue(Box(false));
     DynamicsConfig config;
@@ -47,31 +50,40 @@ TEST_P(DegenerateStartTest, ComesBackToShape) {
     TissueState state = RestState(tissue);
     std::mt19937 generator(11);
     for (Eigen::Vector3d& x : state.position) x = GetParam().place(x, generator);
-    double first = 0;
+    ThreadPool pool(1);
+    ElasticPoints points(config.material, pool);
+    points.TissueChanged(tissue);
+    Field x, unused(tissue.particle_count());
+    for (const Eigen::Vector3d& p : state.position) x.push_back(Vector4::From(p));
+    const double start = points.Evaluate(x, unused);
     AdvanceResult result;
     for (int n = 0; n < 900; ++n) {
       result = dynamics.Advance(tissue, {}, state);
       ASSERT_TRUE(IsFinite(state)) << "step " << n;
-      if (n == 0) first = result.elastic_j;
     }
-    EXPECT_LT(result.elastic_j, 1e-3 * first);
+    RecordProperty("rest_over_start", std::to_string(result.elastic_j / start));
+    EXPECT_LT(result.elastic_j, (GetParam().untangles ? 1e-9 : 0.05) * start);
+    if (!GetParam().untangles) continue;
     // Shape, not only energy: distances are those at rest.
     const double way = (tissue.particle_rest.back() - tissue.particle_rest.front()).norm();
     EXPECT_NEAR((state.position.back() - state.position.front()).norm(), way, 0.02 * way);
   }
 }
 
+// With one integration point per cell a knot (neighbouring layers turned by about half a turn against each other) can be a
+// local minimum of the energy: bodies crushed to a line or scrambled over their whole size may keep one, with all cells upright.
 // Exactly flat, straight or collapsed states are unstable equilibria by symmetry; a breath of noise is what any scene has.
 INSTANTIATE_TEST_SUITE_P(
     Smith2018, DegenerateStartTest,
     testing::Values(
-        Start{"plane", [](const Eigen::Vector3d& X, std::mt19937& g) {
+        Start{"plane", true, [](const Eigen::Vector3d& X, std::mt19937& g) {
                 return Eigen::Vector3d(X.x(), X.y(), 1e-6 * Uniform(g)); }},
-        Start{"line", [](const Eigen::Vector3d& X, std::mt19937& g) {
+        Start{"line", false, [](const Eigen::Vector3d& X, std::mt19937& g) {
                 return Eigen::Vector3d(X.x(), 1e-6 * Uniform(g), 1e-6 * Uniform(g)); }},
-        Start{"point", [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(1e-4 * Noise(g)); }},
-        Start{"scramble", [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(0.03 * Noise(g)); }},
-        Start{"reflection", [](const Eigen::Vector3d& X, std::mt19937& g) {
+        Start{"point", true, [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(1e-4 * Noise(g)); }},
+        Start{"scramble", false, [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(0.03 * Noise(g)); }},
+        Start{"shake", true, [](const Eigen::Vector3d& X, std::mt19937& g) { return Eigen::Vector3d(X + 0.01 * Noise(g)); }},
+        Start{"reflection", true, [](const Eigen::Vector3d& X, std::mt19937& g) {
                 return Eigen::Vector3d(Eigen::Vector3d(X.x(), X.y(), -X.z()) + 1e-6 * Noise(g)); }}),
     [](const auto& parameter) { return parameter.param.name; });
 

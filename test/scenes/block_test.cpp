@@ -61,8 +61,11 @@ TEST(Block, FallsInTwoWhenTheBladePasses) {
   for (size_t t = 0; t < surface.triangles.size(); ++t)
     for (std::uint32_t v : surface.triangles[t]) {
       const double x = surface.rest_positions[v][0];
-      if (surface.fragment[t] == 0) EXPECT_LT(x, 0.062 + scene.object.lattice_size_m);
-      if (surface.fragment[t] == 1) EXPECT_GT(x, 0.062 - scene.object.lattice_size_m);
+      if (surface.fragment[t] == 0) {
+        EXPECT_LT(x, 0.062 + scene.object.lattice_size_m);
+      } else {
+        EXPECT_GT(x, 0.062 - scene.object.lattice_size_m);
+      }
     }
   // Free fall from the velocity that the piece had when it came free.
   const double dt = scene.time_step_s;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dynamics/coarse_point.h"
+#include "dynamics/field_loops.h"
 
 namespace meshless_cutting {
 
@@ -33,13 +34,16 @@ KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Field& f
   return arguments;
 }
 
+void ElasticPoints::Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const {
+  GatherSlots(ParticleRange(chunk, particles_), buffer, groups_.slot_begin.data(), groups_.slots.data(), factor, to);
+}
+
 double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
   pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
     chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(Arguments(groups_.chunks[c], x, nullptr));
   });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    const int end = std::min(particles_, (c + 1) * kParticlesPerChunk);
-    for (int j = c * kParticlesPerChunk; j < end; ++j) gradient[j] += GatherSlots(slots_.data(), groups_, j);
+    Gather(c, slots_.data(), 1, gradient.data());
   });
   double energy = 0;
   for (double e : chunk_energy_) energy += e;
@@ -61,8 +65,7 @@ void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const
   pool_.ForEach(static_cast<int>(groups_.chunks.size()),
                 [&](int c) { kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent)); });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    const int end = std::min(particles_, (c + 1) * kParticlesPerChunk);
-    for (int j = c * kParticlesPerChunk; j < end; ++j) q[j] += factor * GatherSlots(slots_.data(), groups_, j);
+    Gather(c, slots_.data(), factor, q.data());
   });
 }
 
@@ -71,16 +74,18 @@ void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, Bloc
   pool_.ForEach(static_cast<int>(groups_.chunks.size()),
                 [&](int c) { kernels_[groups_.chunks[c].group].diagonal(Arguments(groups_.chunks[c], kNone, &tangent)); });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    const int end = std::min(particles_, (c + 1) * kParticlesPerChunk);
-    for (int j = c * kParticlesPerChunk; j < end; ++j) {
-      const Vector4 diagonal = GatherSlots(slots_.data(), groups_, j);
-      const Vector4 off_diagonal = GatherSlots(slots_.data() + groups_.slot_count, groups_, j);
-      blocks[j].xx += factor * diagonal.x;
-      blocks[j].yy += factor * diagonal.y;
-      blocks[j].zz += factor * diagonal.z;
-      blocks[j].xy += factor * off_diagonal.x;
-      blocks[j].xz += factor * off_diagonal.y;
-      blocks[j].yz += factor * off_diagonal.z;
+    Vector4 diagonal[kParticlesPerChunk], off_diagonal[kParticlesPerChunk];
+    const ParticleRange range(c, particles_);
+    Gather(c, slots_.data(), factor, diagonal - range.begin);
+    Gather(c, slots_.data() + groups_.slot_count, factor, off_diagonal - range.begin);
+    for (int j = range.begin; j < range.end; ++j) {
+      const Vector4 &d = diagonal[j - range.begin], &o = off_diagonal[j - range.begin];
+      blocks[j].xx += d.x;
+      blocks[j].yy += d.y;
+      blocks[j].zz += d.z;
+      blocks[j].xy += o.x;
+      blocks[j].xz += o.y;
+      blocks[j].yz += o.z;
     }
   });
 }

@@ -40,6 +40,9 @@ class ElasticPoints {
  private:
   KernelArguments Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent);
 
+  /// to[j] += factor times the slots of particle j, for a chunk of particles.
+  void Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const;
+
   ThreadPool& pool_;
   LameConstants lame_;
   PointKernels kernels_[kSupportShapes];

@@ -23,7 +23,9 @@ struct alignas(32) Vector4 {
     return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
   }
   friend Vector4 operator*(double s, const Vector4& a) { return {s * a.x, s * a.y, s * a.z, s * a.w}; }
-  friend double Dot(const Vector4& a, const Vector4& b) { return (a.x * b.x + a.y * b.y) + (a.z * b.z + a.w * b.w); }
+  friend Vector4 Multiply(const Vector4& a, const Vector4& b) { return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w}; }
+  friend double Sum(const Vector4& a) { return (a.x + a.y) + (a.z + a.w); }
+  friend double Dot(const Vector4& a, const Vector4& b) { return Sum(Multiply(a, b)); }
 };
 
 /// Begins arrays at a cache line, so that no load of a whole vector register straddles two.

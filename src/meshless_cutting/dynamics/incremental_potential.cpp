@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/field_loops.h"
+
 namespace meshless_cutting {
 namespace {
 
@@ -50,27 +52,23 @@ void IncrementalPotential::Linearise(const Field& y) {
 
 double IncrementalPotential::Product(const Field& p, Field& q) {
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-    const int end = std::min(size(), (c + 1) * kParticlesPerChunk);
-    for (int j = c * kParticlesPerChunk; j < end; ++j) q[j] = inertia[j] * p[j];
+    Scale(ParticleRange(c, size()), inertia.data(), p.data(), q.data());
   });
   for (ForceTerm* term : terms_) term->AddProduct(p, q);
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-    double sum = 0;
-    const int end = std::min(size(), (c + 1) * kParticlesPerChunk);
-    for (int j = c * kParticlesPerChunk; j < end; ++j) {
-      q[j] = free[j] * q[j];
-      sum += Dot(p[j], q[j]);
-    }
-    chunk_sums_[0][c] = sum;
+    chunk_sums_[0][c] = MaskAndDot(ParticleRange(c, size()), free.data(), p.data(), q.data());
   });
   return SumOf(chunk_sums_[0]);
 }
 
 void IncrementalPotential::Diagonal(BlockField& blocks) {
-  for (int j = 0; j < size(); ++j) {
-    blocks[j] = SymmetricBlock();
-    blocks[j].xx = blocks[j].yy = blocks[j].zz = inertia[j];
-  }
+  pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
+    const ParticleRange range(c, size());
+    for (int j = range.begin; j < range.end; ++j) {
+      blocks[j] = SymmetricBlock();
+      blocks[j].xx = blocks[j].yy = blocks[j].zz = inertia[j];
+    }
+  });
   for (ForceTerm* term : terms_) term->AddDiagonal(blocks);
 }
 

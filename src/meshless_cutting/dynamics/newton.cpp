@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamics/field_loops.h"
+
 namespace meshless_cutting {
 namespace {
 
 /// Conjugate gradients stop at this share of the Newton residual: tighter buys nothing while the step is not yet linear.
-constexpr double kLinearTolerance = 0.05;
+constexpr double kLinearTolerance = 0.1;
 constexpr int kLinearIterations = 200;
 
 /// A line search halves at most so often, and takes a step that gives this share of the promised descent.
@@ -47,24 +49,19 @@ int NewtonSolver::SolveLinear(double relative_tolerance) {
   const int count = potential_.size();
   ThreadPool& pool = potential_.pool();
   const int chunks = ChunkCount(count, kParticlesPerChunk);
-  const auto for_each = [&](auto&& body) {
-    pool.ForEach(chunks, [&](int c) {
-      double sum = 0;
-      const int end = std::min(count, (c + 1) * kParticlesPerChunk);
-      for (int j = c * kParticlesPerChunk; j < end; ++j) body(j, sum);
-      chunk_sums_[c] = sum;
-    });
+  const auto sum_of = [&](auto&& task) {
+    pool.ForEach(chunks, [&](int c) { chunk_sums_[c] = task(ParticleRange(c, count)); });
     double sum = 0;
     for (double s : chunk_sums_) sum += s;
     return sum;
   };
 
-  for_each([&](int j, double&) {
+  for (int j = 0; j < count; ++j) {
     step_[j] = Vector4();
     residual_[j] = -1.0 * gradient_[j];
-  });
+  }
   double rz = preconditioner_.Apply(residual_, scaled_, pool);
-  for_each([&](int j, double&) { direction_[j] = scaled_[j]; });
+  direction_ = scaled_;
   const double stop = relative_tolerance * relative_tolerance * norms_.residual * norms_.residual;
   double reached = norms_.residual * norms_.residual;
   int iteration = 0;
@@ -73,21 +70,21 @@ int NewtonSolver::SolveLinear(double relative_tolerance) {
     ++iteration;
     if (!(curvature > 0) || !std::isfinite(rz)) {
       // Rounding, or a tangent that is not quite definite: what has been gained so far is a direction of descent.
-      if (iteration == 1) for_each([&](int j, double&) { step_[j] = scaled_[j]; });
+      if (iteration == 1) step_ = scaled_;
       break;
     }
     const double alpha = rz / curvature;
-    const double rr = for_each([&](int j, double& sum) {
-      step_[j] += alpha * direction_[j];
-      residual_[j] = residual_[j] - alpha * product_[j];
-      sum += Dot(residual_[j], residual_[j]);
+    const double rr = sum_of([&](const ParticleRange& range) {
+      return AdvanceSolution(range, alpha, direction_.data(), product_.data(), step_.data(), residual_.data());
     });
     reached = rr;
     if (rr <= stop) break;
     const double next = preconditioner_.Apply(residual_, scaled_, pool);
     const double beta = next / rz;
     rz = next;
-    for_each([&](int j, double&) { direction_[j] = scaled_[j] + beta * direction_[j]; });
+    pool.ForEach(chunks, [&](int c) {
+      NextDirection(ParticleRange(c, count), beta, scaled_.data(), direction_.data());
+    });
   }
   const double decades = 0.5 * std::log10(norms_.residual * norms_.residual / std::max(reached, 1e-300));
   preconditioner_.ReportIterations(iteration / std::max(decades, 0.1));

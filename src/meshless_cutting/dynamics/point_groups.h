@@ -87,12 +87,4 @@ struct PointGroups {
   std::vector<int> slot_of_, slot_particle_;
 };
 
-/// Sum of the slots of particle j.
-inline Vector4 GatherSlots(const Vector4* buffer, const PointGroups& groups, int j) {
-  Vector4 sum;
-  const int end = groups.slot_begin[j + 1];
-  for (int n = groups.slot_begin[j]; n < end; ++n) sum += buffer[groups.slots[n]];
-  return sum;
-}
-
 }  // namespace meshless_cutting

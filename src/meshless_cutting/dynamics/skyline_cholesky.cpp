@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define MESHLESS_CUTTING_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define MESHLESS_CUTTING_CLONES
-#endif
+#include "dynamics/instruction_sets.h"
 
 namespace meshless_cutting {
 namespace {

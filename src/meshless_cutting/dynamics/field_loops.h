@@ -1,0 +1,43 @@
+// The inner loops over particles of the linear solver, each over a range that one task takes.
+#pragma once
+
+#include <vector>
+
+#include "dynamics/coarse_matrix.h"
+#include "dynamics/field.h"
+#include "dynamics/force_term.h"
+
+namespace meshless_cutting {
+
+/// Particles [begin, end).
+struct ParticleRange {
+  int begin, end;
+  ParticleRange(int chunk, int count)
+      : begin(chunk * kParticlesPerChunk), end(begin + kParticlesPerChunk < count ? begin + kParticlesPerChunk : count) {}
+};
+
+/// to[j] += factor times the sum of buffer[slots[n]] over n in [slot_begin[j], slot_begin[j + 1]).
+void GatherSlots(const ParticleRange& range, const Vector4* buffer, const int* slot_begin, const int* slots, double factor,
+                 Vector4* to);
+
+/// q[j] = weight[j] p[j].
+void Scale(const ParticleRange& range, const double* weight, const Vector4* p, Vector4* q);
+
+/// q[j] *= mask[j]; returns the sum of p[j] . q[j].
+double MaskAndDot(const ParticleRange& range, const double* mask, const Vector4* p, Vector4* q);
+
+/// step += alpha direction, residual -= alpha product; returns the sum of |residual|^2.
+double AdvanceSolution(const ParticleRange& range, double alpha, const Vector4* direction, const Vector4* product,
+                       Vector4* step, Vector4* residual);
+
+/// direction = scaled + beta direction.
+void NextDirection(const ParticleRange& range, double beta, const Vector4* scaled, Vector4* direction);
+
+/// coarse[3 c + i] = sum over the listed particles of basis_c r_i.
+void Restrict(const int* particles, int count, const Vector4* basis, const Vector4* r, double* coarse);
+
+/// z[j] = inverse[j] r[j] + sum_c basis_c(j) coarse[aggregate of j][c], zero for particles of none; returns the sum of r . z.
+double ScaleAndProlong(const ParticleRange& range, const SymmetricBlock* inverse, const int* aggregate,
+                       const Vector4* basis, const double* coarse, const Vector4* r, Vector4* z);
+
+}  // namespace meshless_cutting
