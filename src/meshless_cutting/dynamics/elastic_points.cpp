@@ -35,7 +35,8 @@ KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Field& f
 }
 
 void ElasticPoints::Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const {
-  GatherSlots(ParticleRange(chunk, particles_), buffer, groups_.slot_begin.data(), groups_.slots.data(), factor, to);
+  GatherSlots(ParticleRange(chunk, particles_), buffer, groups_.slot_begin.data(), groups_.slots.data(), factor,
+              to);
 }
 
 double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
@@ -43,7 +44,7 @@ double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
     chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(Arguments(groups_.chunks[c], x, nullptr));
   });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    Gather(c, slots_.data(), 1, gradient.data());
+    Gather(c, slots_.data(), 1, &gradient[c * kParticlesPerChunk]);
   });
   double energy = 0;
   for (double e : chunk_energy_) energy += e;
@@ -65,7 +66,7 @@ void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const
   pool_.ForEach(static_cast<int>(groups_.chunks.size()),
                 [&](int c) { kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent)); });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    Gather(c, slots_.data(), factor, q.data());
+    Gather(c, slots_.data(), factor, &q[c * kParticlesPerChunk]);
   });
 }
 
@@ -76,8 +77,8 @@ void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, Bloc
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
     Vector4 diagonal[kParticlesPerChunk], off_diagonal[kParticlesPerChunk];
     const ParticleRange range(c, particles_);
-    Gather(c, slots_.data(), factor, diagonal - range.begin);
-    Gather(c, slots_.data() + groups_.slot_count, factor, off_diagonal - range.begin);
+    Gather(c, slots_.data(), factor, diagonal);
+    Gather(c, slots_.data() + groups_.slot_count, factor, off_diagonal);
     for (int j = range.begin; j < range.end; ++j) {
       const Vector4 &d = diagonal[j - range.begin], &o = off_diagonal[j - range.begin];
       blocks[j].xx += d.x;

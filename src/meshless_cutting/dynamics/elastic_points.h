@@ -40,7 +40,7 @@ class ElasticPoints {
  private:
   KernelArguments Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent);
 
-  /// to[j] += factor times the slots of particle j, for a chunk of particles.
+  /// to[n] += factor times the slots of the n-th particle of a chunk.
   void Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const;
 
   ThreadPool& pool_;

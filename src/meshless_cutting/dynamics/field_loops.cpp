@@ -9,7 +9,7 @@ MESHLESS_CUTTING_CLONES void GatherSlots(const ParticleRange& range, const Vecto
   for (int j = range.begin; j < range.end; ++j) {
     Vector4 sum;
     for (int n = slot_begin[j]; n < slot_begin[j + 1]; ++n) sum += buffer[slots[n]];
-    to[j] += factor * sum;
+    to[j - range.begin] += factor * sum;
   }
 }
 

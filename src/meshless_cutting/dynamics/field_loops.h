@@ -16,7 +16,7 @@ struct ParticleRange {
       : begin(chunk * kParticlesPerChunk), end(begin + kParticlesPerChunk < count ? begin + kParticlesPerChunk : count) {}
 };
 
-/// to[j] += factor times the sum of buffer[slots[n]] over n in [slot_begin[j], slot_begin[j + 1]).
+/// to[j - begin] += factor times the sum of buffer[slots[n]] over n in [slot_begin[j], slot_begin[j + 1]).
 void GatherSlots(const ParticleRange& range, const Vector4* buffer, const int* slot_begin, const int* slots, double factor,
                  Vector4* to);
 

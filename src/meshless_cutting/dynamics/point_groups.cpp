@@ -12,74 +12,10 @@ namespace {
 /// Weight of the stabilisation against zero-energy modes; 1 gave the smallest errors over the reference problems.
 constexpr double kStabilisation = 1.0;
 
-/// Relative deviation of rest positions or gradients that still counts as "the corners of a box".
-constexpr double kBoxTolerance = 1e-9;
-
-/// One point, sorted out.
-struct Support {
-  SupportShape shape = SupportShape::kGeneral;
-  std::array<int, 8> order{};  // boxes: corner -> k
-  double box[3] = {};
-  double hourglass[4][3] = {};
-};
-
-double MeanSquareOffset(const Tissue& tissue, int p, Eigen::Vector3d& mean) {
-  const int K = tissue.support_size;
-  const int* particles = &tissue.point_particles[static_cast<std::size_t>(p) * K];
-  mean.setZero();
-  for (int k = 0; k < K; ++k) mean += tissue.particle_rest[particles[k]];
-  mean /= K;
-  double sum = 0;
-  for (int k = 0; k < K; ++k) sum += (tissue.particle_rest[particles[k]] - mean).squaredNorm();
-  return sum / K;
-}
-
-Support Classify(const Tissue& tissue, int p, const Eigen::Vector3d& mean) {
-  Support support;
-  if (tissue.support_size != 8) return support;
-  const std::size_t first = static_cast<std::size_t>(p) * 8;
-  const int* particles = &tissue.point_particles[first];
-  const Eigen::Vector3d* gradients = &tissue.point_gradients[first];
-
-  const Eigen::Vector3d half = (tissue.particle_rest[particles[0]] - mean).cwiseAbs();
-  if (!(half.minCoeff() > 0)) return support;
-  unsigned found = 0;
-  for (int k = 0; k < 8; ++k) {
-    const Eigen::Vector3d offset = tissue.particle_rest[particles[k]] - mean;
-    if ((offset.cwiseAbs() - half).cwiseAbs().maxCoeff() > kBoxTolerance * half.maxCoeff()) return support;
-    const int corner = (offset.x() > 0 ? 1 : 0) | (offset.y() > 0 ? 2 : 0) | (offset.z() > 0 ? 4 : 0);
-    found |= 1u << corner;
-    support.order[corner] = k;
-  }
-  if (found != 0xffu) return support;
-
-  const double scale = 1 / half.minCoeff();
-  double largest_hourglass = 0;
-  for (int mode = 0; mode < 8; ++mode) {
-    Eigen::Vector3d c = Eigen::Vector3d::Zero();
-    for (int corner = 0; corner < 8; ++corner) c += Hadamard(mode, corner) * gradients[support.order[corner]];
-    c /= 8;
-    const int* hourglass = std::find(kHourglassModes, kHourglassModes + 4, mode);
-    if (hourglass != kHourglassModes + 4) {
-      for (int i = 0; i < 3; ++i) support.hourglass[hourglass - kHourglassModes][i] = c[i];
-      largest_hourglass = std::max(largest_hourglass, c.cwiseAbs().maxCoeff());
-      continue;
-    }
-    if (mode != 0) {
-      const int axis = mode == 1 ? 0 : mode == 2 ? 1 : 2;
-      support.box[axis] = c[axis];
-      c[axis] = 0;
-    }
-    if (!(c.cwiseAbs().maxCoeff() <= kBoxTolerance * scale)) return support;
-  }
-  support.shape = largest_hourglass <= kBoxTolerance * scale ? SupportShape::kBoxCentre : SupportShape::kBox;
-  return support;
-}
-
 /// Rows of the least squares fit of an affine map to K positions; a support that is flat or thinner is fitted with the
 /// smallest gradient.
-void FillGeneral(const Tissue& tissue, int p, const Eigen::Vector3d& mean, PointGroup& group, int slot) {
-  const int K = tissue.support_size, batch = slot / kLanes, lane = slot % kLanes;
+void FillGeneral(const Tissue& tissue, int p, const Eigen::Vector3d& mean, PointGroup& group, int batch, int lane) {
+  const int K = tissue.support_size;
   const std::size_t first = static_cast<std::size_t>(p) * K;
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
   for (int k = 0; k < K; ++k) {
@@ -117,47 +53,75 @@ std::uint64_t MortonCode(const Eigen::Vector3d& x) {
   return code;
 }
 
-void Clear(PointGroup& group) {
-  group.batches = 0;
-  group.point.clear();
-  group.particle.clear();
-  group.slot.clear();
-  for (AlignedVector<double>* array : {&group.volume, &group.stabilisation, &group.box, &group.hourglass, &group.gradient,
-                                     &group.fit, &group.offset}) {
-    array->clear();
-  }
-}
-
-void AddBatch(PointGroup& group) {
-  const std::size_t lanes = static_cast<std::size_t>(++group.batches) * kLanes, K = group.support;
-  group.point.resize(lanes, -1);
+void Resize(PointGroup& group) {
+  const std::size_t lanes = static_cast<std::size_t>(group.batches) * kLanes, K = group.support;
+  const bool is_general = group.shape == SupportShape::kGeneral;
+  group.point.assign(lanes, -1);
   group.particle.resize(lanes * K);
   group.slot.resize(lanes * K);
-  group.volume.resize(lanes, 0);
-  group.stabilisation.resize(lanes, 0);
-  if (group.shape != SupportShape::kGeneral) group.box.resize(lanes * 3);
-  if (group.shape == SupportShape::kBox) group.hourglass.resize(lanes * 12);
-  if (group.shape == SupportShape::kGeneral) {
-    for (AlignedVector<double>* array : {&group.gradient, &group.fit, &group.offset}) array->resize(lanes * K * 3);
+  group.volume.assign(lanes, 0);
+  group.stabilisation.assign(lanes, 0);
+  group.box.resize(is_general ? 0 : lanes * 3);
+  group.hourglass.resize(group.shape == SupportShape::kBox ? lanes * 12 : 0);
+  for (AlignedVector<double>* array : {&group.gradient, &group.fit, &group.offset}) {
+    array->resize(is_general ? lanes * K * 3 : 0);
   }
 }
 
-/// Copies the numbers that describe a point from lane 0 of the last batch to the filling lanes: any valid numbers will do.
-void FillLastBatch(PointGroup& group, int points) {
-  if (points % kLanes == 0) return;
-  const auto fill = [&](auto& array, int per_batch) {
+/// Where the n-th of `count` points of a group goes. Along the space-filling curve a chunk is filled lane by lane, not batch by batch: the
+/// points of one batch lie apart, share no particles, and do not wait for each other's sums.
+struct Place {
+  Place(int n, int count) {
+    constexpr int kPointsPerChunk = kBatchesPerChunk * kLanes;
+    const int chunk = n / kPointsPerChunk, in_chunk = std::min(kPointsPerChunk, count - chunk * kPointsPerChunk);
+    const int batches = (in_chunk + kLanes - 1) / kLanes;
+    lane = n % kPointsPerChunk / batches;
+    batch = chunk * kBatchesPerChunk + n % kPointsPerChunk % batches;
+  }
+  int batch, lane;
+};
+
+/// Copies the numbers that describe a point from lane 0 of a batch, which is never empty, to lanes without a point: any valid
+/// numbers will do.
+void FillEmptyLanes(PointGroup& group) {
+  const auto fill = [&](auto& array, int batch, int lane, int per_batch) {
     if (array.empty()) return;
     for (int row = 0; row < per_batch; ++row) {
-      auto* lanes = &array[(static_cast<std::size_t>(group.batches - 1) * per_batch + row) * kLanes];
-      std::fill(lanes + points % kLanes, lanes + kLanes, lanes[0]);
+      auto* lanes = &array[(static_cast<std::size_t>(batch) * per_batch + row) * kLanes];
+      lanes[lane] = lanes[0];
     }
   };
-  fill(group.particle, group.support);
-  fill(group.box, 3);
-  fill(group.hourglass, 12);
-  fill(group.gradient, group.support * 3);
-  fill(group.fit, group.support * 3);
-  fill(group.offset, group.support * 3);
+  for (int batch = 0; batch < group.batches; ++batch) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (group.point[static_cast<std::size_t>(batch) * kLanes + lane] >= 0) continue;
+      fill(group.particle, batch, lane, group.support);
+      fill(group.box, batch, lane, 3);
+      fill(group.hourglass, batch, lane, 12);
+      fill(group.gradient, batch, lane, group.support * 3);
+      fill(group.fit, batch, lane, group.support * 3);
+      fill(group.offset, batch, lane, group.support * 3);
+    }
+  }
+}
+
+/// Writes point p to its place.
+void Put(const Tissue& tissue, int p, const PointSupport& support, double stabilisation, const Place& place,
+         PointGroup& group) {
+  const int K = group.support, lane = place.lane;
+  const std::size_t batch = place.batch;
+  const bool is_box = support.shape != SupportShape::kGeneral;
+  group.point[batch * kLanes + lane] = p;
+  group.volume[batch * kLanes + lane] = tissue.point_volume[p];
+  group.stabilisation[batch * kLanes + lane] = stabilisation;
+  for (int k = 0; k < K; ++k) {
+    const int from = is_box ? support.order[k] : k;
+    group.particle[(batch * K + k) * kLanes + lane] = tissue.point_particles[static_cast<std::size_t>(p) * K + from];
+  }
+  if (!is_box) FillGeneral(tissue, p, support.mean, group, place.batch, lane);
+  for (int i = 0; i < 3 && is_box; ++i) group.box[(batch * 3 + i) * kLanes + lane] = support.box[i];
+  for (int n = 0; n < 12 && support.shape == SupportShape::kBox; ++n) {
+    group.hourglass[(batch * 12 + n) * kLanes + lane] = support.hourglass[n / 3][n % 3];
+  }
 }
 
 }  // namespace
@@ -186,43 +150,28 @@ void PointGroups::SortNewPoints(const Tissue& tissue) {
 }
 
 void PointGroups::Build(const Tissue& tissue, double shear_modulus) {
-  const int K = tissue.support_size;
+  SortNewPoints(tissue);
   int counts[kSupportShapes] = {};
+  supports_.resize(tissue.point_count());
+  for (int p = 0; p < tissue.point_count(); ++p) {
+    supports_[p] = DescribeSupport(tissue, p);
+    ++counts[static_cast<int>(supports_[p].shape)];
+  }
   for (int shape = 0; shape < kSupportShapes; ++shape) {
     groups[shape].shape = static_cast<SupportShape>(shape);
-    groups[shape].support = K;
-    Clear(groups[shape]);
+    groups[shape].support = tissue.support_size;
+    groups[shape].batches = (counts[shape] + kLanes - 1) / kLanes;
+    Resize(groups[shape]);
   }
-  SortNewPoints(tissue);
+  int next[kSupportShapes] = {};
   for (int p : order_) {
-    Eigen::Vector3d mean;
-    const double h2 = 4.0 / 3 * MeanSquareOffset(tissue, p, mean);
-    const Support support = Classify(tissue, p, mean);
-    PointGroup& group = groups[static_cast<int>(support.shape)];
-    const int index = counts[static_cast<int>(support.shape)]++;
-    const int batch = index / kLanes, lane = index % kLanes;
-    if (lane == 0) AddBatch(group);
-
-    group.point[index] = p;
-    group.volume[index] = tissue.point_volume[p];
-    group.stabilisation[index] = h2 > 0 ? kStabilisation * shear_modulus * tissue.point_volume[p] / (K * h2) : 0;
-    const bool is_box = support.shape != SupportShape::kGeneral;
-    for (int k = 0; k < K; ++k) {
-      const int from = is_box ? support.order[k] : k;
-      group.particle[(static_cast<std::size_t>(batch) * K + k) * kLanes + lane] =
-          tissue.point_particles[static_cast<std::size_t>(p) * K + from];
-    }
-    if (is_box) {
-      for (int i = 0; i < 3; ++i) group.box[(static_cast<std::size_t>(batch) * 3 + i) * kLanes + lane] = support.box[i];
-    }
-    if (support.shape == SupportShape::kBox) {
-      for (int n = 0; n < 12; ++n) {
-        group.hourglass[(static_cast<std::size_t>(batch) * 12 + n) * kLanes + lane] = support.hourglass[n / 3][n % 3];
-      }
-    }
-    if (!is_box) FillGeneral(tissue, p, mean, group, index);
+    const PointSupport& support = supports_[p];
+    const int shape = static_cast<int>(support.shape);
+    const double scale = tissue.support_size * support.h2;
+    const double stabilisation = scale > 0 ? kStabilisation * shear_modulus * tissue.point_volume[p] / scale : 0;
+    Put(tissue, p, support, stabilisation, Place(next[shape]++, counts[shape]), groups[shape]);
   }
-  for (int shape = 0; shape < kSupportShapes; ++shape) FillLastBatch(groups[shape], counts[shape]);
+  for (PointGroup& group : groups) FillEmptyLanes(group);
   BuildSlots(tissue.particle_count());
 }
 

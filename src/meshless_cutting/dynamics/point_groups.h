@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dynamics/field.h"
+#include "dynamics/point_support.h"
 #include "tissue/tissue.h"
 
 namespace meshless_cutting {
@@ -15,28 +16,7 @@ constexpr int kLanes = 8;
 /// Batches that one task of a parallel loop takes: some microseconds of work, whose sums stay in the first level cache.
 constexpr int kBatchesPerChunk = 32;
 
-/// What a point's K particles look like at rest; each has its own loop.
-enum class SupportShape {
-  kBoxCentre,  // the corners of a box, gradients of the trilinear functions at its centre: a full cell
-  kBox,        // the corners of a box, any consistent gradients: a cell that is partly filled or cut
-  kGeneral,    // anything else
-};
-constexpr int kSupportShapes = 3;
-
-/// The modes that vanish for affine maps, in the order of PointGroup::hourglass.
-constexpr int kHourglassModes[4] = {3, 5, 6, 7};
-
-/// H_m(k): +-1, see PointGroup.
-inline double Hadamard(int mode, int corner) {
-  const int unset = mode & ~corner;
-  return ((unset ^ unset >> 1 ^ unset >> 2) & 1) ? -1 : 1;
-}
-
 /// Points of one shape. Arrays are indexed [batch][...][lane]; a lane is a point.
-///
-/// On the corners of a box any function is a sum of the 8 Hadamard modes H_m(k) = +-1: bit 0 of m and of k is x, bit 1 y,
-/// bit 2 z; H_1, H_2, H_4 are linear, H_3, H_5, H_6, H_7 ("hourglass") vanish for every affine map. Consistent gradients
-/// are g_k = sum_m c_m H_m(k) with c_0 = 0 and c_1, c_2, c_4 along the axes, so that 3 numbers, and 12 more off the centre, say all.
 struct PointGroup {
   SupportShape shape = SupportShape::kGeneral;
   int support = 8;  // K
@@ -82,6 +62,7 @@ struct PointGroups {
   void SortNewPoints(const Tissue& tissue);
   void BuildSlots(int particles);
 
+  std::vector<PointSupport> supports_;   // scratch
   std::vector<int> order_;               // points along a space-filling curve
   std::vector<std::uint64_t> curve_;     // place of each point on it
   std::vector<int> slot_of_, slot_particle_;
