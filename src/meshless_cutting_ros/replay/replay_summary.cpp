@@ -20,18 +20,25 @@ void ReplaySummary::Add(const Simulation& simulation) {
   for (const CutEvent& event : simulation.events()) {
     if (event.type == CutEventType::kStarted) ++strokes_;
     if (event.type == CutEventType::kStarted || event.type == CutEventType::kProgress) area_m2_ += event.area_m2;
-    if (event.type == CutEventType::kEnded) length_m_ += event.length_m;
+    if (event.type == CutEventType::kStarted || event.type == CutEventType::kProgress)
+      open_length_m_[event.tool] = event.length_m;  // so far in the stroke
+    if (event.type == CutEventType::kEnded) {
+      length_m_ += event.length_m;
+      open_length_m_.erase(event.tool);
+    }
   }
 }
 
 std::string ReplaySummary::Words(const Simulation& simulation) const {
   const StepStatistics& statistics = simulation.statistics();
+  double length_m = length_m_;
+  for (const auto& [tool, length] : open_length_m_) length_m += length;
   char line[400];
   std::snprintf(line, sizeof(line),
                 "%zu frames, %.3f s; %d strokes, length %.1f mm, cut face %.2f cm^2, %d links cut; frame time p50 %.1f "
                 "ms, p99 %.1f ms",
                 frame_s_.size(), static_cast<double>(frame_s_.size()) * simulation.scene().time_step_s, strokes_,
-                1e3 * length_m_, 1e4 * area_m2_, statistics.links_cut, 1e3 * Percentile(frame_s_, 0.5),
+                1e3 * length_m, 1e4 * area_m2_, statistics.links_cut, 1e3 * Percentile(frame_s_, 0.5),
                 1e3 * Percentile(frame_s_, 0.99));
   std::string words = line;
   words += "\nfragments:";

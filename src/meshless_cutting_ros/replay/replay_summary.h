@@ -1,6 +1,7 @@
 // What a replay did, in a few lines.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ class ReplaySummary {
 
  private:
   int strokes_ = 0;
+  std::map<int, double> open_length_m_;  // per tool, of strokes that have not ended
   double length_m_ = 0;
   double area_m2_ = 0;
   std::vector<double> frame_s_;
