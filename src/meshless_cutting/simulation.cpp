@@ -104,9 +104,10 @@ struct Simulation::Parts {
     const double slack = 1e-9 * body->grid().spacing().maxCoeff();
     for (const Eigen::Vector3d& X : body->tissue().particle_rest)
       if ((X.array() >= box.min.array() - slack).all() && (X.array() <= box.max.array() + slack).all()) return;
-    throw std::runtime_error(SceneMessage(scene, "object.fixed[" + std::to_string(i) + "]", "",
-                                          "holds no particle; expected a box in the object frame that reaches at least one "
-                                          "node of the background grid; enlarge it"));
+    throw std::runtime_error(
+        SceneMessage(scene, "object.fixed[" + std::to_string(i) + "]", "",
+                     "holds no particle; expected a box in the object frame that reaches at least one "
+                     "node of the background grid; enlarge it"));
   }
 
   /// Everything that changes while the simulation runs.
@@ -140,7 +141,8 @@ struct Simulation::Parts {
   StepStatistics statistics;
 };
 
-// ---- One frame, in the order of the paper's section 2.3 -------------------------------------------------------------------
+// ---- One frame, in the order of the paper's section 2.3
+// -------------------------------------------------------------------
 
 void Simulation::Step() {
   Parts& p = *parts_;
@@ -153,15 +155,15 @@ void Simulation::Step() {
   if (p.cutting) {
     p.MoveTools(t0_s, t1_s);  // 1. move the blades along the samples of this frame
     s.move_tools_s = watch.Lap();
-    p.FindCrossings();        // 2. links that they cross while the object moves as it did last
+    p.FindCrossings();  // 2. links that they cross while the object moves as it did last
     s.find_crossings_s = watch.Lap();
-    p.Cut();                  // 3. graph, surface, integration points, twins, mapping
+    p.Cut();  // 3. graph, surface, integration points, twins, mapping
     s.cut_s = watch.Lap();
   }
   p.body->BeginAdvance();
-  p.Advance();                // 4. elastic dynamics
+  p.Advance();  // 4. elastic dynamics
   s.advance_s = watch.Lap();
-  p.body->EndAdvance();       //    and the surface after it
+  p.body->EndAdvance();  //    and the surface after it
   s.map_surface_s = watch.Lap();
   s.total_s = s.move_tools_s + s.find_crossings_s + s.cut_s + s.advance_s + s.map_surface_s;
   ++s.step;
@@ -190,9 +192,9 @@ void Simulation::Parts::FindCrossings() {
       const auto& other = tools[j].cut.crossings;
       mine.erase(std::remove_if(mine.begin(), mine.end(),
                                 [&](const Crossing& c) {
-                                  const auto at = std::lower_bound(
-                                      other.begin(), other.end(), c.cut.link,
-                                      [](const Crossing& o, int link) { return o.cut.link < link; });
+                                  const auto at =
+                                      std::lower_bound(other.begin(), other.end(), c.cut.link,
+                                                       [](const Crossing& o, int link) { return o.cut.link < link; });
                                   if (at == other.end() || at->cut.link != c.cut.link) return false;
                                   return at->t < c.t || (at->t == c.t && j < i);
                                 }),
@@ -252,9 +254,11 @@ void Simulation::Parts::Count() {
   statistics.fragments = static_cast<int>(body->surface().fragment_volume_m3.size());
 }
 
-// ---- The rest of the interface -----------------------------------------------------------------------------------------------
+// ---- The rest of the interface
+// -----------------------------------------------------------------------------------------------
 
-Simulation::Simulation(const Scene& scene, const Progress& progress) : parts_(std::make_unique<Parts>(scene, progress)) {}
+Simulation::Simulation(const Scene& scene, const Progress& progress)
+    : parts_(std::make_unique<Parts>(scene, progress)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
@@ -294,7 +298,8 @@ std::vector<Eigen::Vector3d> Simulation::IntegrationPointPositions() const {
   std::vector<Eigen::Vector3d> positions(body.points().points().size(), Eigen::Vector3d::Zero());
   for (size_t p = 0; p < positions.size(); ++p) {
     body.shape().Values(body.points().points()[p].cell, body.points().points()[p].centroid, phi.data());
-    for (size_t k = 0; k < K; ++k) positions[p] += phi[k] * body.state().position[body.tissue().point_particles[p * K + k]];
+    for (size_t k = 0; k < K; ++k)
+      positions[p] += phi[k] * body.state().position[body.tissue().point_particles[p * K + k]];
   }
   return positions;
 }

@@ -1,5 +1,5 @@
-// One soft object, the tools that cut it, and the frame that brings both forward. No ROS, no clock, no global state: the same
-// scene and the same samples give the same bits, whatever the number of threads.
+// One soft object, the tools that cut it, and the frame that brings both forward. No ROS, no clock, no global state:
+// the same scene and the same samples give the same bits, whatever the number of threads.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,16 +18,17 @@
 
 namespace meshless_cutting {
 
-/// What one frame cost and how good it is. Times are wall times of this run and the only thing here that is not reproducible.
+/// What one frame cost and how good it is. Times are wall times of this run and the only thing here that is not
+/// reproducible.
 struct StepStatistics {
-  std::uint64_t step = 0;    // frames since load or reset, this one included
-  double time_s = 0;         // simulated time at its end
+  std::uint64_t step = 0;  // frames since load or reset, this one included
+  double time_s = 0;       // simulated time at its end
   std::uint32_t status = kStepOk;
   double move_tools_s = 0, find_crossings_s = 0, cut_s = 0, advance_s = 0, map_surface_s = 0, total_s = 0;  // wall
   int newton_iterations = 0, linear_iterations = 0;
   double relative_residual = 0;  // reached
   int particles = 0, integration_points = 0, links = 0, links_cut = 0, vertices = 0, triangles = 0, fragments = 0;
-  int contacts = 0;              // skin vertices that touch an obstacle
+  int contacts = 0;                                    // skin vertices that touch an obstacle
   double kinetic_j = 0, elastic_j = 0, gravity_j = 0;  // energies; gravity relative to the scene origin
 };
 
@@ -71,7 +72,8 @@ class Simulation {
   const Tool& tool(int index) const;
   std::vector<Eigen::Vector3d> blade(int index) const;
 
-  /// The paper's Fig. 12: integration points now (scene frame, m), and for each surface vertex the point it is mapped on.
+  /// The paper's Fig. 12: integration points now (scene frame, m), and for each surface vertex the point it is mapped
+  /// on.
   std::vector<Eigen::Vector3d> IntegrationPointPositions() const;
   std::vector<int> MappedPoints() const;
 

@@ -74,7 +74,8 @@ std::string CheckPieces(const SoftBody& body) {
     const auto [at, first] = fragment_of.emplace(group, body.point_fragment()[p]);
     if (at->second != body.point_fragment()[p]) return At("one piece of the graph is two of the physics at point", p);
   }
-  if (fragment_of.size() != body.surface().fragment_volume_m3.size()) return "pieces of graph and physics differ in number";
+  if (fragment_of.size() != body.surface().fragment_volume_m3.size())
+    return "pieces of graph and physics differ in number";
   const auto& vertices = body.cut_surface().vertices();
   std::vector<double> surface_volume(body.surface().fragment_volume_m3.size(), 0);
   for (size_t t = 0; t < body.surface().triangles.size(); ++t) {
@@ -109,7 +110,8 @@ std::string CheckTwins(const SoftBody& body) {
       const auto& point = body.points().points()[p];
       const Eigen::Vector3d node = body.grid().NodePosition(
           body.grid().NodeIndex(body.grid().CellCoordinates(point.cell) + body.shape().offset(static_cast<int>(k))));
-      if ((node - body.tissue().particle_rest[j]).norm() > 1e-12) return At("a particle away from its node at point", p);
+      if ((node - body.tissue().particle_rest[j]).norm() > 1e-12)
+        return At("a particle away from its node at point", p);
       users[j].push_back(p);
     }
   for (size_t j = 0; j < users.size(); ++j) {

@@ -1,5 +1,5 @@
-// The invariants of topology and mapping as named predicates. Each returns nothing when it holds, else the first thing that
-// breaks it, in words.
+// The invariants of topology and mapping as named predicates. Each returns nothing when it holds, else the first thing
+// that breaks it, in words.
 #pragma once
 
 #include <string>
@@ -9,21 +9,23 @@
 
 namespace meshless_cutting {
 
-/// Every directed edge of the surface is matched by exactly one opposite one (edge-manifold, closed, oriented), no triangle has
-/// two equal corners or zero area at rest, all arrays fit.
+/// Every directed edge of the surface is matched by exactly one opposite one (edge-manifold, closed, oriented), no
+/// triangle has two equal corners or zero area at rest, all arrays fit.
 std::string CheckSurfaceClosed(const Surface& surface);
 
 /// Volume enclosed by the surface at rest, m^3.
 double RestVolume(const Surface& surface);
 
-/// Fragments of the surface = connected groups of the graph = pieces of the physics; volumes of the points add up to the
-/// enclosed volume; mass is density times volume.
+/// Fragments of the surface = connected groups of the graph = pieces of the physics; volumes of the points add up to
+/// the enclosed volume; mass is density times volume.
 std::string CheckPieces(const SoftBody& body);
 
-/// No integration point sees a particle across a cut: the points that share a particle are joined through material inside its support.
+/// No integration point sees a particle across a cut: the points that share a particle are joined through material
+/// inside its support.
 std::string CheckTwins(const SoftBody& body);
 
-/// No vertex is mapped across a cut: the graph joins the vertex to the point within the cells that the point's group touches.
+/// No vertex is mapped across a cut: the graph joins the vertex to the point within the cells that the point's group
+/// touches.
 std::string CheckMapping(const SoftBody& body);
 
 /// Shape functions at all points and vertices reproduce constant and linear fields to 1e-10.

@@ -1,4 +1,5 @@
-// The surface is closed and physics, mapping and surface agree for *any* set of cut links, not only for those a blade can make.
+// The surface is closed and physics, mapping and surface agree for *any* set of cut links, not only for those a blade
+// can make.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -1,5 +1,5 @@
-// Random strokes of random blades through bodies that move and deform at random: the crossing search finds exactly the links that
-// an exhaustive exact search finds, and after every cut all invariants hold.
+// Random strokes of random blades through bodies that move and deform at random: the crossing search finds exactly the
+// links that an exhaustive exact search finds, and after every cut all invariants hold.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -15,7 +15,9 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double Uniform(Random& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double Uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 
 Eigen::Vector3d RandomVector(Random& random, double size) {
   return {Uniform(random, -size, size), Uniform(random, -size, size), Uniform(random, -size, size)};
@@ -33,8 +35,8 @@ std::vector<int> ExhaustiveSearch(const SoftBody& body, const BladeMotion& blade
     bool crossed = false;
     for (const BladeWindow& w : blade)
       for (size_t e = 0; e + 1 < w.points_t0.size() && !crossed; ++e) {
-        const MovingSegment object = {(1 - w.t0) * a0 + w.t0 * a1, (1 - w.t0) * b0 + w.t0 * b1, (1 - w.t1) * a0 + w.t1 * a1,
-                                      (1 - w.t1) * b0 + w.t1 * b1};
+        const MovingSegment object = {(1 - w.t0) * a0 + w.t0 * a1, (1 - w.t0) * b0 + w.t0 * b1,
+                                      (1 - w.t1) * a0 + w.t1 * a1, (1 - w.t1) * b0 + w.t1 * b1};
         crossed = FindFirstCrossing({w.points_t0[e], w.points_t0[e + 1], w.points_t1[e], w.points_t1[e + 1]}, object)
                       .has_value();
       }
@@ -49,7 +51,8 @@ class RandomBlade {
   RandomBlade(Random& random, double size) : random_(random), size_(size) {
     const int edges = std::uniform_int_distribution<int>(1, 5)(random);
     const Eigen::Vector3d start = RandomVector(random, size), along = RandomVector(random, 1).normalized() * size;
-    for (int i = 0; i <= edges; ++i) points_.push_back(start + along * (i / double(edges) - 0.5) + RandomVector(random, 0.1 * size));
+    for (int i = 0; i <= edges; ++i)
+      points_.push_back(start + along * (i / double(edges) - 0.5) + RandomVector(random, 0.1 * size));
     velocity_ = -start / 6 + RandomVector(random, 0.05 * size);
   }
   BladeMotion Frame() {

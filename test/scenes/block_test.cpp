@@ -15,7 +15,8 @@ Eigen::Vector3d Centroid(const Surface& surface, std::uint32_t fragment) {
   double volume = 0;
   for (size_t t = 0; t < surface.triangles.size(); ++t) {
     if (surface.fragment[t] != fragment) continue;
-    const Eigen::Vector3d &a = surface.positions[surface.triangles[t][0]], &b = surface.positions[surface.triangles[t][1]],
+    const Eigen::Vector3d &a = surface.positions[surface.triangles[t][0]],
+                          &b = surface.positions[surface.triangles[t][1]],
                           &c = surface.positions[surface.triangles[t][2]];
     const double v = a.cross(b).dot(c) / 6;
     volume += v;
@@ -144,8 +145,10 @@ TEST(Block, ResetGoesBackToTheStart) {
       blade.FeedUntil(simulation, 0, step * scene.time_step_s);
       simulation.Step();
     }
-    if (run == 0) first = simulation.surface().positions;
-    else EXPECT_EQ(first, simulation.surface().positions);
+    if (run == 0)
+      first = simulation.surface().positions;
+    else
+      EXPECT_EQ(first, simulation.surface().positions);
     simulation.Reset();
     EXPECT_EQ(simulation.surface().fragment_volume_m3.size(), 1u);
     EXPECT_EQ(simulation.statistics().step, 0u);

@@ -1,4 +1,5 @@
-// Paper Fig. 7 and 8: a cylinder that falls onto a blade at rest and a blade that rises through a cylinder at rest make the same cut.
+// Paper Fig. 7 and 8: a cylinder that falls onto a blade at rest and a blade that rises through a cylinder at rest make
+// the same cut.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace {
 Scene CylinderScene() {
   Scene scene;
   scene.object.name = "cylinder";
-  scene.object.mesh = MESHLESS_CUTTING_SOURCE_DIR "/meshes/cylinder.obj";  // radius 0.03, axis along y from -0.05 to 0.05
+  scene.object.mesh =
+      MESHLESS_CUTTING_SOURCE_DIR "/meshes/cylinder.obj";  // radius 0.03, axis along y from -0.05 to 0.05
   scene.object.cell_size_m = 0.01;
   scene.object.lattice_size_m = 0.006;
   scene.object.material = {MaterialModel::kStableNeoHookean, 20000, 0.45, 1050};
@@ -25,7 +27,8 @@ Scene CylinderScene() {
   return scene;
 }
 
-/// Rest positions of the vertices of cut faces after the blade is through; two fragments, all invariants in every frame.
+/// Rest positions of the vertices of cut faces after the blade is through; two fragments, all invariants in every
+/// frame.
 std::vector<Eigen::Vector3d> CutFace(Simulation& simulation, LineMotion* blade) {
   for (int step = 1; step <= 60 && simulation.surface().fragment_volume_m3.size() == 1; ++step) {
     if (blade) blade->FeedUntil(simulation, 0, step * simulation.scene().time_step_s);

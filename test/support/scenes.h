@@ -8,7 +8,8 @@
 
 namespace meshless_cutting {
 
-/// The 0.1 x 0.04 x 0.04 m block, held at x <= 0.01 m, 50 kPa, no gravity, with a straight blade of 0.08 m along y, the middle of its edge at the tool's origin.
+/// The 0.1 x 0.04 x 0.04 m block, held at x <= 0.01 m, 50 kPa, no gravity, with a straight blade of 0.08 m along y, the
+/// middle of its edge at the tool's origin.
 inline Scene BlockScene() {
   Scene scene;
   scene.object.name = "block";

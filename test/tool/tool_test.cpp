@@ -1,9 +1,9 @@
 // Samples in, blade windows out: no gap, no jump cut, nothing from bad samples.
+#include "tool/tool.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
-
-#include "tool/tool.h"
 
 namespace meshless_cutting {
 namespace {

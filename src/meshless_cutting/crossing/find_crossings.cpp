@@ -7,11 +7,11 @@
 namespace meshless_cutting {
 namespace {
 
-/// Six bits, one per side of the box [min, max] that the point lies beyond (Cohen-Sutherland). Things whose codes share a bit have
-/// a face of the box between them and it.
+/// Six bits, one per side of the box [min, max] that the point lies beyond (Cohen-Sutherland). Things whose codes share
+/// a bit have a face of the box between them and it.
 std::uint8_t Outcode(const Eigen::Vector3d& x, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  return static_cast<std::uint8_t>((x[0] < min[0]) | (x[0] > max[0]) << 1 | (x[1] < min[1]) << 2 | (x[1] > max[1]) << 3 |
-                                   (x[2] < min[2]) << 4 | (x[2] > max[2]) << 5);
+  return static_cast<std::uint8_t>((x[0] < min[0]) | (x[0] > max[0]) << 1 | (x[1] < min[1]) << 2 |
+                                   (x[1] > max[1]) << 3 | (x[2] < min[2]) << 4 | (x[2] > max[2]) << 5);
 }
 
 }  // namespace
@@ -31,7 +31,8 @@ void CrossingFinder::FindNearBlocks(const Aabb& box, const LatticeMotion& object
   auto encode = [&](const std::vector<Eigen::Vector3d>& x0, const std::vector<Eigen::Vector3d>& x1,
                     std::vector<std::uint8_t>& codes) {
     codes.resize(x1.size());
-    for (size_t i = 0; i < x1.size(); ++i) codes[i] = Outcode(x0[i], box.min, box.max) & Outcode(x1[i], box.min, box.max);
+    for (size_t i = 0; i < x1.size(); ++i)
+      codes[i] = Outcode(x0[i], box.min, box.max) & Outcode(x1[i], box.min, box.max);
   };
   encode(object.particles_t0(), object.particles_t1(), particle_code_);
   encode(object.surface_t0(), object.surface_t1(), surface_code_);

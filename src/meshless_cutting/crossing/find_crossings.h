@@ -13,8 +13,8 @@ namespace meshless_cutting {
 /// First contact of a blade with a link during a frame.
 struct Crossing {
   LinkCut cut;
-  double t;                // frame time, [0, 1]
-  double along_m;          // where on the blade, from the start of its polyline
+  double t;               // frame time, [0, 1]
+  double along_m;         // where on the blade, from the start of its polyline
   Eigen::Vector3d point;  // scene frame, m
 };
 
@@ -23,7 +23,8 @@ class CrossingFinder {
  public:
   CrossingFinder(const Lattice& lattice, const MaterialGraph& graph);
 
-  /// Crossings of one blade in one frame, at most one per link (the earliest), sorted by link. Valid until the next call.
+  /// Crossings of one blade in one frame, at most one per link (the earliest), sorted by link. Valid until the next
+  /// call.
   const std::vector<Crossing>& Find(const BladeMotion& blade, const LatticeMotion& object);
 
  private:

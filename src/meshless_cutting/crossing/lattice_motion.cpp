@@ -4,8 +4,8 @@
 
 namespace meshless_cutting {
 
-// Offset of a vertex in the search as a share of the lattice size. Larger: safer against a blade that runs along lattice planes
-// within rounding or the solver's residual; smaller: truer. At 1e-6 it is nanometres.
+// Offset of a vertex in the search as a share of the lattice size. Larger: safer against a blade that runs along
+// lattice planes within rounding or the solver's residual; smaller: truer. At 1e-6 it is nanometres.
 constexpr double kOffsetShare = 1e-6;
 
 namespace {
@@ -108,8 +108,8 @@ void LatticeMotion::ForgetStarts() { kept_.clear(); }
 Eigen::Vector3d LatticeMotion::Start(int vertex) const {
   const int s = surface_->VertexOf(vertex);
   if (s >= 0) return (*surface_t0_)[s] + offset_[vertex];
-  const auto kept = std::lower_bound(kept_.begin(), kept_.end(), vertex,
-                                     [](const auto& entry, int v) { return entry.first < v; });
+  const auto kept =
+      std::lower_bound(kept_.begin(), kept_.end(), vertex, [](const auto& entry, int v) { return entry.first < v; });
   if (kept != kept_.end() && kept->first == vertex) return kept->second + offset_[vertex];
   return mapping_.Position(vertex, *particles_t0_) + offset_[vertex];
 }

@@ -10,13 +10,13 @@
 
 namespace meshless_cutting {
 
-/// Positions of the lattice vertices at the two ends of the window, scene frame. Vertices of the skin are the drawn ones; inside the
-/// object a vertex gets a position only when one is asked for. Windows of consecutive frames chain without a gap, also
-/// where a vertex was mapped anew: its window starts where it was published.
+/// Positions of the lattice vertices at the two ends of the window, scene frame. Vertices of the skin are the drawn
+/// ones; inside the object a vertex gets a position only when one is asked for. Windows of consecutive frames chain
+/// without a gap, also where a vertex was mapped anew: its window starts where it was published.
 ///
-/// For the search alone every vertex stands off its place by a constant vector of its own, a millionth of the lattice size.
-/// A blade that runs exactly through vertices or along links, as one guided along the axes of a block does, then passes each vertex on one
-/// side instead of touching, and so cutting, all links around it.
+/// For the search alone every vertex stands off its place by a constant vector of its own, a millionth of the lattice
+/// size. A blade that runs exactly through vertices or along links, as one guided along the axes of a block does, then
+/// passes each vertex on one side instead of touching, and so cutting, all links around it.
 class LatticeMotion {
  public:
   LatticeMotion(const Lattice& lattice, const CutSurface& surface, const IntegrationPoints& points,
@@ -26,8 +26,9 @@ class LatticeMotion {
   void SetWindow(const std::vector<Eigen::Vector3d>* particles_t0, const std::vector<Eigen::Vector3d>* particles_t1,
                  const std::vector<Eigen::Vector3d>* surface_t0, const std::vector<Eigen::Vector3d>* surface_t1);
 
-  /// During a cut, before the tissue's particles change: the blocks of `points` were split or lost material. Inner vertices
-  /// that the graph no longer joins to their point keep where they are (`particles`: positions now) as the start of the next window.
+  /// During a cut, before the tissue's particles change: the blocks of `points` were split or lost material. Inner
+  /// vertices that the graph no longer joins to their point keep where they are (`particles`: positions now) as the
+  /// start of the next window.
   void KeepStarts(const std::vector<int>& points, const std::vector<Eigen::Vector3d>& particles);
   /// After it: maps those anew, and follows the particles of all `points` whose links changed.
   void Remap(const std::vector<int>& points);
@@ -44,7 +45,9 @@ class LatticeMotion {
   /// Blocks that some lattice edge leads to from this one (a superset: never shrinks). Sorted.
   const std::vector<int>& block_neighbours(int block) const { return block_neighbours_[block]; }
   /// Particles that bound the vertices of a block, but for its loose ones.
-  const int* block_particles(int block) const { return &tissue_->point_particles[static_cast<size_t>(block) * tissue_->support_size]; }
+  const int* block_particles(int block) const {
+    return &tissue_->point_particles[static_cast<size_t>(block) * tissue_->support_size];
+  }
   int support_size() const { return tissue_->support_size; }
   /// Vertices of a block that its particles do not bound: those of the skin, and those mapped from outside a cell.
   const std::vector<int>& block_loose(int block) const { return block_loose_[block]; }
@@ -67,9 +70,9 @@ class LatticeMotion {
   const Lattice* lattice_;
   const CutSurface* surface_;
   const Tissue* tissue_;
-  double offset_size_;  // m
+  double offset_size_;                   // m
   std::vector<Eigen::Vector3d> offset_;  // per vertex, m
-  VertexMapping mapping_;  // all lattice vertices; those of the skin use it for their block alone
+  VertexMapping mapping_;                // all lattice vertices; those of the skin use it for their block alone
   std::vector<std::vector<int>> block_vertices_, block_loose_, block_neighbours_;
   std::vector<int> lost_;                              // vertices to be mapped anew
   std::vector<std::pair<int, Eigen::Vector3d>> kept_;  // sorted by vertex

@@ -54,7 +54,10 @@ void Split(const BackgroundGrid& grid, const Tetrahedron& x, int axis, Eigen::Ve
     q[axis] = plane;
     return q;
   };
-  auto lower = [&](const Tetrahedron& part) { cell[axis] = from; Split(grid, part, axis + 1, cell, sign, parts); };
+  auto lower = [&](const Tetrahedron& part) {
+    cell[axis] = from;
+    Split(grid, part, axis + 1, cell, sign, parts);
+  };
   auto upper = [&](const Tetrahedron& part) { Split(grid, part, axis, cell, sign, parts); };
   // A prism between triangles a and b, as three tetrahedra.
   auto prism = [](auto emit, const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, const Eigen::Vector3d& a2,

@@ -12,13 +12,14 @@ namespace meshless_cutting {
 /// Part of a body in one cell.
 struct CellVolume {
   int cell = -1;
-  double volume = 0;                                  // m^3, signed
+  double volume = 0;                                 // m^3, signed
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // volume times centroid, m^4
 };
 
-/// Adds the parts of the tetrahedron x (m, object frame; volume signed by its orientation) to `parts`, merging with those that
-/// are there. Exact to rounding.
-void AddCellVolumes(const BackgroundGrid& grid, const std::array<Eigen::Vector3d, 4>& x, std::vector<CellVolume>& parts);
+/// Adds the parts of the tetrahedron x (m, object frame; volume signed by its orientation) to `parts`, merging with
+/// those that are there. Exact to rounding.
+void AddCellVolumes(const BackgroundGrid& grid, const std::array<Eigen::Vector3d, 4>& x,
+                    std::vector<CellVolume>& parts);
 
 /// Parts of a cell below this share of its volume are rounding at cell faces.
 inline constexpr double kSliverShare = 1e-9;

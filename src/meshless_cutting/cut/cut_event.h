@@ -9,15 +9,17 @@ namespace meshless_cutting {
 
 enum class CutEventType : std::uint8_t { kStarted = 0, kProgress = 1, kEnded = 2, kSeparated = 3, kJumpRefused = 4 };
 
-/// Something that a tool did during a frame. STARTED and PROGRESS carry what this frame cut, ENDED the sums of the stroke.
+/// Something that a tool did during a frame. STARTED and PROGRESS carry what this frame cut, ENDED the sums of the
+/// stroke.
 struct CutEvent {
   CutEventType type = CutEventType::kProgress;
-  int tool = -1;        // index in the scene
-  int stroke = 0;       // counts the strokes of this tool from 1
+  int tool = -1;   // index in the scene
+  int stroke = 0;  // counts the strokes of this tool from 1
   int links_cut = 0;
   double area_m2 = 0;   // cut face added, one lip, at rest
   double length_m = 0;  // area over greatest depth: the way of the edge through the tissue
-  double depth_m = 0;   // length of blade edge between the outermost links it cut in one frame, greatest so far in the stroke
+  double depth_m =
+      0;  // length of blade edge between the outermost links it cut in one frame, greatest so far in the stroke
   std::vector<Eigen::Vector3d> points;       // where links were cut, scene frame, m
   std::vector<Eigen::Vector3d> rest_points;  // the same at rest, object frame, m
   std::vector<double> fragment_volume_m3;    // SEPARATED: all fragments after it, largest first

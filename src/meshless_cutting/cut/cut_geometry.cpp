@@ -24,7 +24,8 @@ struct CapEdge {
   Corner middle, middle_other;
 };
 
-double SmallestArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+double SmallestArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                    const Eigen::Vector3d& d) {
   return std::min((b - a).cross(c - a).norm(), (c - a).cross(d - a).norm());  // split along a-c
 }
 
@@ -191,8 +192,8 @@ CapShape CapTriangles(const Lattice& lattice, const MaterialGraph& graph, int te
       own[i] = has_own(edges[i].from, edges[i].from_other);
       has_face_point = has_face_point || edges[i].from.point.kind == Kind::kFace;
     }
-    // No diagonal may carry more than its own two triangles on each lip: not one whose two ends are shared by both lips, nor
-    // one along a face, where the next tetrahedron could draw the same.
+    // No diagonal may carry more than its own two triangles on each lip: not one whose two ends are shared by both
+    // lips, nor one along a face, where the next tetrahedron could draw the same.
     auto diagonal = [&](int i) {
       const bool face_point = edges[i].from.point.kind == Kind::kFace || edges[i + 2].from.point.kind == Kind::kFace;
       const bool along_face = has_face_point && !face_point;
@@ -240,11 +241,13 @@ Eigen::Vector3d RestPosition(const Lattice& lattice, const MaterialGraph& graph,
     }
     case Kind::kMiddle: {
       std::array<Segment, 3> segments;
-      const int count = FaceSegments(lattice, graph, point.id, lattice.faces[point.id], lattice.face_links[point.id], segments);
+      const int count =
+          FaceSegments(lattice, graph, point.id, lattice.faces[point.id], lattice.face_links[point.id], segments);
       for (int i = 0; i < count; ++i)
         if (segments[i].key == point.segment)
           return (RestPosition(lattice, graph, segments[i].from.point) +
-                  RestPosition(lattice, graph, segments[i].to.point)) / 2;
+                  RestPosition(lattice, graph, segments[i].to.point)) /
+                 2;
       return Eigen::Vector3d::Zero();  // unreachable: a middle point exists only on a segment
     }
     case Kind::kCentre:

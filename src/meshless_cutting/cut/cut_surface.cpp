@@ -112,7 +112,10 @@ int CutSurface::Resolve(const Corner& corner) {
       int& copy = copies[lattice_->links[id][1] == corner.side];
       if (copy < 0) {
         const int vertex = AddVertex(corner);
-        if (link_split_[id]) copy = vertex; else copies = {vertex, vertex};
+        if (link_split_[id])
+          copy = vertex;
+        else
+          copies = {vertex, vertex};
       }
       return copy;
     }
@@ -188,7 +191,8 @@ bool CutSurface::DrawCaps(int tetrahedron) {
     for (int i = 0; i < 3; ++i) triangle[i] = static_cast<std::uint32_t>(Resolve(c[i]));
     slot.triangles.push_back(triangle);
     const Eigen::Vector3d& a = vertices_[triangle[0]].rest;
-    area += 0.25 * (vertices_[triangle[1]].rest - a).cross(vertices_[triangle[2]].rest - a).norm();  // both lips are here
+    area +=
+        0.25 * (vertices_[triangle[1]].rest - a).cross(vertices_[triangle[2]].rest - a).norm();  // both lips are here
   }
   cut_area_ += area - slot.area;
   slot.area = area;
@@ -232,7 +236,8 @@ void CutSurface::Update(const std::vector<int>& links) {
 void CutSurface::WriteTriangles(Surface& surface) const {
   surface.triangles.clear();
   surface.region.clear();
-  for (const auto& triangles : skin_) surface.triangles.insert(surface.triangles.end(), triangles.begin(), triangles.end());
+  for (const auto& triangles : skin_)
+    surface.triangles.insert(surface.triangles.end(), triangles.begin(), triangles.end());
   surface.region.resize(surface.triangles.size(), SurfaceRegion::kSkin);
   for (const CapSlot& cap : caps_)
     surface.triangles.insert(surface.triangles.end(), cap.triangles.begin(), cap.triangles.end());

@@ -1,4 +1,5 @@
-// The closed surface of the object for any set of cut links: skin faces, split where links are cut, and both lips of each cut.
+// The closed surface of the object for any set of cut links: skin faces, split where links are cut, and both lips of
+// each cut.
 #pragma once
 
 #include <array>
@@ -18,11 +19,11 @@ struct SurfaceVertex {
 
 /// Keeps the triangles up to date with the graph, touching only what lies around newly cut links.
 ///
-/// One drawn vertex stands for all corners that meet at a point through uncut material: around a cut link the two sides are one
-/// as long as one tetrahedron around it holds both ends in one piece (the crack front); a face point is shared by those of the
-/// face's three vertices that one of its two tetrahedra joins. Where both ends of a segment are shared but its inside is open, a
-/// middle point keeps the mesh edge-manifold. The union of tetrahedron pieces glued along face regions has exactly these
-/// triangles as its boundary: the surface is closed for any set of cut links.
+/// One drawn vertex stands for all corners that meet at a point through uncut material: around a cut link the two sides
+/// are one as long as one tetrahedron around it holds both ends in one piece (the crack front); a face point is shared
+/// by those of the face's three vertices that one of its two tetrahedra joins. Where both ends of a segment are shared
+/// but its inside is open, a middle point keeps the mesh edge-manifold. The union of tetrahedron pieces glued along
+/// face regions has exactly these triangles as its boundary: the surface is closed for any set of cut links.
 class CutSurface {
  public:
   CutSurface(const Lattice& lattice, const MaterialGraph& graph);
@@ -54,7 +55,7 @@ class CutSurface {
     std::array<std::array<int, 2>, 3> middle = {{{-1, -1}, {-1, -1}, {-1, -1}}};  // left and right copy
   };
   struct CapSlot {
-    unsigned pieces_mask = 0;                       // cut mask when the centres were made
+    unsigned pieces_mask = 0;                      // cut mask when the centres were made
     std::array<int, 4> centre = {-1, -1, -1, -1};  // by piece
     CapShape shape = CapShape::kNone;
     std::vector<Triangle> triangles;
@@ -74,9 +75,9 @@ class CutSurface {
   const Lattice* lattice_;
   const MaterialGraph* graph_;
   std::vector<SurfaceVertex> vertices_;
-  std::vector<int> skin_vertex_;                     // per lattice vertex
-  std::vector<std::array<int, 2>> link_vertex_;      // per link: copy on the side of its first and second vertex
-  std::vector<std::uint8_t> link_split_;             // per link
+  std::vector<int> skin_vertex_;                       // per lattice vertex
+  std::vector<std::array<int, 2>> link_vertex_;        // per link: copy on the side of its first and second vertex
+  std::vector<std::uint8_t> link_split_;               // per link
   std::vector<int> face_slot_, skin_slot_, cap_slot_;  // per face, face, tetrahedron: index below or -1
   std::vector<FaceSlot> faces_;
   std::vector<std::vector<Triangle>> skin_;  // per skin face, in the order of the lattice's faces

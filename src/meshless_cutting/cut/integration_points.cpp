@@ -36,8 +36,8 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
   for (size_t t = 0; t < lattice.tetrahedra.size(); ++t) {
     parts.clear();
     const std::array<int, 4>& v = lattice.tetrahedra[t];
-    AddCellVolumes(grid, {lattice.vertices[v[0]], lattice.vertices[v[1]], lattice.vertices[v[2]], lattice.vertices[v[3]]},
-                   parts);
+    AddCellVolumes(
+        grid, {lattice.vertices[v[0]], lattice.vertices[v[1]], lattice.vertices[v[2]], lattice.vertices[v[3]]}, parts);
     MergeParts(parts, [&](const CellVolume& part) { return part.volume < sliver; });
     AddChips(static_cast<int>(t), v[0], parts);
     for (const CellVolume& part : parts) tetrahedron_cells_.items.push_back(part.cell);
@@ -52,7 +52,8 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
 }
 
 void IntegrationPoints::AddChips(int tetrahedron, int anchor, const std::vector<CellVolume>& parts) {
-  for (const CellVolume& part : parts) cells_[part.cell].chips.push_back({tetrahedron, anchor, part.volume, part.moment});
+  for (const CellVolume& part : parts)
+    cells_[part.cell].chips.push_back({tetrahedron, anchor, part.volume, part.moment});
 }
 
 void IntegrationPoints::Regroup(int cell_index) {
@@ -148,7 +149,8 @@ void IntegrationPoints::ClipPieces(const CutSurface& surface, int tetrahedron,
     return lattice_->vertices[v[std::find(pieces.piece.begin(), pieces.piece.end(), piece) - pieces.piece.begin()]];
   };
   if (pieces.count == 1) {
-    AddCellVolumes(*grid_, {apex(0), lattice_->vertices[v[1]], lattice_->vertices[v[2]], lattice_->vertices[v[3]]}, parts[0]);
+    AddCellVolumes(*grid_, {apex(0), lattice_->vertices[v[1]], lattice_->vertices[v[2]], lattice_->vertices[v[3]]},
+                   parts[0]);
   } else {
     // Each piece as signed tetrahedra between one of its vertices and its closed boundary.
     std::vector<CornerTriangle> triangles;

@@ -11,17 +11,18 @@
 
 namespace meshless_cutting {
 
-/// The material of one point: volume and centroid are those of the pieces themselves, clipped by the cell, so a cut keeps the sum
-/// of both to rounding.
+/// The material of one point: volume and centroid are those of the pieces themselves, clipped by the cell, so a cut
+/// keeps the sum of both to rounding.
 struct IntegrationPoint {
   int cell = -1;
   double volume = 0;                                   // m^3, at rest
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // m, object frame
-  std::vector<int> vertices;                           // lattice vertices of its pieces, sorted; some may lie outside the cell
-  int parent = -1;  // the point it was split from in the last Update(), or itself
+  std::vector<int> vertices;  // lattice vertices of its pieces, sorted; some may lie outside the cell
+  int parent = -1;            // the point it was split from in the last Update(), or itself
 };
 
-/// Groups are read from the graph. They only ever split: the largest part keeps the index, others get new ones at the end.
+/// Groups are read from the graph. They only ever split: the largest part keeps the index, others get new ones at the
+/// end.
 class IntegrationPoints {
  public:
   IntegrationPoints(const Lattice& lattice, const MaterialGraph& graph, const BackgroundGrid& grid);
@@ -48,7 +49,8 @@ class IntegrationPoints {
     std::vector<Chip> chips;
     std::vector<int> points;
   };
-  /// Material of all pieces of a tetrahedron, by piece and cell. A cell that the uncut tetrahedron has material in keeps some.
+  /// Material of all pieces of a tetrahedron, by piece and cell. A cell that the uncut tetrahedron has material in
+  /// keeps some.
   void ClipPieces(const CutSurface& surface, int tetrahedron, std::array<std::vector<CellVolume>, 4>& parts) const;
   void AddChips(int tetrahedron, int anchor, const std::vector<CellVolume>& parts);
   void Regroup(int cell);
@@ -58,7 +60,8 @@ class IntegrationPoints {
   const MaterialGraph* graph_;
   const BackgroundGrid* grid_;
   std::vector<Cell> cells_;
-  Incidence tetrahedron_cells_;  // cells that each tetrahedron has material in; fixed at load, so groups only ever split
+  Incidence
+      tetrahedron_cells_;  // cells that each tetrahedron has material in; fixed at load, so groups only ever split
   std::vector<IntegrationPoint> points_;
   std::vector<std::vector<int>> vertex_points_;
   std::vector<std::vector<int>> neighbours_;

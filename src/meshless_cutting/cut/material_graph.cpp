@@ -4,8 +4,8 @@
 
 namespace meshless_cutting {
 
-// Share of a link that a drawn cut keeps from its ends. Larger: rounder triangles, but cuts drawn further from where the blade
-// went (at most this share of a lattice edge).
+// Share of a link that a drawn cut keeps from its ends. Larger: rounder triangles, but cuts drawn further from where
+// the blade went (at most this share of a lattice edge).
 constexpr double kEndMargin = 0.05;
 
 MaterialGraph::MaterialGraph(const Lattice& lattice)

@@ -27,13 +27,13 @@ class MaterialGraph {
   unsigned CutMask(int tetrahedron) const { return mask_[tetrahedron]; }
   int cut_count() const { return cut_count_; }
 
-  /// Rest position of the cut, m. Kept off the ends of the link so that no sliver is drawn; which vertex lies on which side
-  /// does not depend on it.
+  /// Rest position of the cut, m. Kept off the ends of the link so that no sliver is drawn; which vertex lies on which
+  /// side does not depend on it.
   Eigen::Vector3d CutPoint(int link) const;
 
  private:
   const Lattice* lattice_;
-  std::vector<double> proportion_;   // per link, as found; -1: not cut
+  std::vector<double> proportion_;  // per link, as found; -1: not cut
   std::vector<std::uint8_t> mask_;  // per tetrahedron
   int cut_count_ = 0;
 };

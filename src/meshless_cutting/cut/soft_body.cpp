@@ -17,7 +17,8 @@ BackgroundGrid FitGrid(const Lattice& lattice, const ObjectConfig& config) {
   return BackgroundGrid(low, high, config.cell_size_m, ShapeFunctions::Margin(config.support_radius_cells));
 }
 
-/// Surroundings of the marked vertices of a surface: outward normals at rest (not unit) and the vertices they share triangles with.
+/// Surroundings of the marked vertices of a surface: outward normals at rest (not unit) and the vertices they share
+/// triangles with.
 struct Surroundings {
   std::vector<int> slot;  // per vertex: index below, -1 where not marked
   std::vector<Eigen::Vector3d> normal;
@@ -134,7 +135,8 @@ void SoftBody::FindFragments() {
     for (size_t k = 1; k < K; ++k) root[find(tissue_.point_particles[p * K + k])] = a;
   }
   std::vector<double> volume(root.size(), 0);
-  for (int p = 0; p < tissue_.point_count(); ++p) volume[find(tissue_.point_particles[p * K])] += tissue_.point_volume[p];
+  for (int p = 0; p < tissue_.point_count(); ++p)
+    volume[find(tissue_.point_particles[p * K])] += tissue_.point_volume[p];
   std::vector<int> order;
   for (size_t j = 0; j < root.size(); ++j)
     if (volume[j] > 0) order.push_back(static_cast<int>(j));
@@ -149,7 +151,8 @@ void SoftBody::FindFragments() {
   for (int p = 0; p < tissue_.point_count(); ++p) point_fragment_[p] = number[find(tissue_.point_particles[p * K])];
   surface_.fragment.resize(surface_.triangles.size());
   for (size_t t = 0; t < surface_.triangles.size(); ++t)
-    surface_.fragment[t] = static_cast<std::uint32_t>(point_fragment_[mapping_.point(static_cast<int>(surface_.triangles[t][0]))]);
+    surface_.fragment[t] =
+        static_cast<std::uint32_t>(point_fragment_[mapping_.point(static_cast<int>(surface_.triangles[t][0]))]);
 }
 
 void SoftBody::CloseWindow() { motion_->ForgetStarts(); }

@@ -31,7 +31,8 @@ class SoftBody {
   /// The crossing window that EndAdvance() opened has been searched; call before Cut().
   void CloseWindow();
 
-  /// End of step 4: call before the state changes, then after it. Evaluates the drawn surface and opens the next crossing window.
+  /// End of step 4: call before the state changes, then after it. Evaluates the drawn surface and opens the next
+  /// crossing window.
   void BeginAdvance();
   void EndAdvance();
 

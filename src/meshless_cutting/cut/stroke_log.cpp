@@ -4,7 +4,8 @@
 
 namespace meshless_cutting {
 
-// A blade that has cut nothing for this long has ended its stroke. Shorter: a hesitating hand makes several strokes of one.
+// A blade that has cut nothing for this long has ended its stroke. Shorter: a hesitating hand makes several strokes of
+// one.
 constexpr double kStrokeIdle_s = 0.5;
 
 void StrokeLog::Record(const FrameCut& cut, std::vector<CutEvent>& events) {

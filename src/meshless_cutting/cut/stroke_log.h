@@ -10,14 +10,15 @@ namespace meshless_cutting {
 
 /// What one tool did in one frame.
 struct FrameCut {
-  std::vector<Crossing> crossings;         // links that it cut
+  std::vector<Crossing> crossings;           // links that it cut
   std::vector<Eigen::Vector3d> rest_points;  // of the crossings, object frame, m
-  double area_m2 = 0;                      // its share of the cut face added
-  bool active = false;                     // the blade was there
-  int jumps = 0;                           // jumps refused
+  double area_m2 = 0;                        // its share of the cut face added
+  bool active = false;                       // the blade was there
+  int jumps = 0;                             // jumps refused
 };
 
-/// The strokes of one tool. A stroke starts with the first link cut and ends when nothing was cut for a while or the blade is gone.
+/// The strokes of one tool. A stroke starts with the first link cut and ends when nothing was cut for a while or the
+/// blade is gone.
 class StrokeLog {
  public:
   StrokeLog(int tool, double time_step_s) : tool_(tool), time_step_s_(time_step_s) {}

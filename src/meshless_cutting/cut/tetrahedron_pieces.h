@@ -12,7 +12,8 @@ struct TetrahedronPieces {
   std::array<std::int8_t, 4> piece{};  // piece of each local vertex
 };
 
-/// The pieces for a pattern of cut links: bit l is set when link l of kTetrahedronLinks is cut (64 patterns, one table).
+/// The pieces for a pattern of cut links: bit l is set when link l of kTetrahedronLinks is cut (64 patterns, one
+/// table).
 const TetrahedronPieces& PiecesOf(unsigned cut_mask);
 
 }  // namespace meshless_cutting

@@ -5,8 +5,8 @@
 
 namespace meshless_cutting {
 
-Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points, double density_kg_m3,
-             const std::vector<Box>& fixed, Tissue& tissue)
+Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points,
+             double density_kg_m3, const std::vector<Box>& fixed, Tissue& tissue)
     : grid_(&grid), shape_(&shape), points_(&points), density_(density_kg_m3), fixed_(fixed) {
   tissue.support_size = shape.support_size();
   std::vector<int> all(points.points().size()), source;
@@ -49,14 +49,16 @@ void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
   };
   for (size_t i = 0; i < members.size(); ++i)
     for (int q : points_->Neighbours(members[i].point)) {
-      const auto j = std::lower_bound(members.begin(), members.end(), q, [](const Member& m, int p) { return m.point < p; });
+      const auto j =
+          std::lower_bound(members.begin(), members.end(), q, [](const Member& m, int p) { return m.point < p; });
       if (j == members.end() || j->point != q) continue;
       const int a = find(static_cast<int>(i)), b = find(static_cast<int>(j - members.begin()));
       members[std::max(a, b)].root = std::min(a, b);
     }
 
   std::map<int, double> volume;  // per group
-  for (size_t i = 0; i < members.size(); ++i) volume[find(static_cast<int>(i))] += tissue.point_volume[members[i].point];
+  for (size_t i = 0; i < members.size(); ++i)
+    volume[find(static_cast<int>(i))] += tissue.point_volume[members[i].point];
   std::map<int, int> heir;  // particle -> group that keeps it, the largest
   for (const auto& [root, v] : volume) {
     const int particle = tissue.point_particles[members[root].entry];
@@ -94,10 +96,12 @@ void Twins::LumpMass(Tissue& tissue) const {
   tissue.particle_mass.assign(tissue.particle_rest.size(), 0);
   for (int p = 0; p < tissue.point_count(); ++p)
     for (int k = 0; k < K; ++k)
-      tissue.particle_mass[tissue.point_particles[p * K + k]] += density_ * tissue.point_volume[p] * shape_->centre_values()[k];
+      tissue.particle_mass[tissue.point_particles[p * K + k]] +=
+          density_ * tissue.point_volume[p] * shape_->centre_values()[k];
 }
 
-const std::vector<int>& Twins::Update(const std::vector<int>& changed_points, Tissue& tissue, std::vector<int>& source) {
+const std::vector<int>& Twins::Update(const std::vector<int>& changed_points, Tissue& tissue,
+                                      std::vector<int>& source) {
   relinked_ = changed_points;
   source.clear();
   std::vector<int> nodes;

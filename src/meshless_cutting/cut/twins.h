@@ -10,21 +10,22 @@
 
 namespace meshless_cutting {
 
-/// An integration point sees a particle that it reaches through material inside the particle's support. Where the points in the
-/// support of a node fall apart into groups that share no material there, each group has a particle of its own at that node, a
-/// twin. So every point always has its full set, moment matrices never become singular, and a cut is a re-indexing.
+/// An integration point sees a particle that it reaches through material inside the particle's support. Where the
+/// points in the support of a node fall apart into groups that share no material there, each group has a particle of
+/// its own at that node, a twin. So every point always has its full set, moment matrices never become singular, and a
+/// cut is a re-indexing.
 ///
-/// Mass is lumped with the shape functions of the centre of a cell: the parts of a cut point add up to what the point gave to each
-/// particle, and a cut keeps mass, momentum and angular momentum to rounding.
+/// Mass is lumped with the shape functions of the centre of a cell: the parts of a cut point add up to what the point
+/// gave to each particle, and a cut keeps mass, momentum and angular momentum to rounding.
 class Twins {
  public:
   /// Fills `tissue` at load.
   Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points, double density_kg_m3,
         const std::vector<Box>& fixed, Tissue& tissue);
 
-  /// Call after IntegrationPoints::Update with the points that it returned. New particles start as copies of what they were
-  /// split from: `source` gets one entry per new particle, the particle to copy. Returns the points whose links or shape
-  /// functions changed, sorted.
+  /// Call after IntegrationPoints::Update with the points that it returned. New particles start as copies of what they
+  /// were split from: `source` gets one entry per new particle, the particle to copy. Returns the points whose links or
+  /// shape functions changed, sorted.
   const std::vector<int>& Update(const std::vector<int>& changed_points, Tissue& tissue, std::vector<int>& source);
 
  private:

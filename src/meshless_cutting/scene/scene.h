@@ -41,12 +41,12 @@ struct ObjectConfig {
 };
 
 struct PlaneObstacle {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();     // m, scene frame
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   // unit, points to where tissue may be
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // m, scene frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, points to where tissue may be
 };
 struct BoxObstacle {
-  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();             // m
-  Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();             // centre of the box in the scene frame
+  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  // m
+  Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();  // centre of the box in the scene frame
 };
 struct ObstacleConfig {
   std::variant<PlaneObstacle, BoxObstacle> shape;

@@ -1,4 +1,5 @@
-// Mapping of vertices on the meshless tissue (paper section 2.2): one integration point per vertex, MLS weights of its particles.
+// Mapping of vertices on the meshless tissue (paper section 2.2): one integration point per vertex, MLS weights of its
+// particles.
 #pragma once
 
 #include <array>
@@ -13,19 +14,20 @@ namespace meshless_cutting {
 
 /// How often each criterion of section 2.2 ruled out a point that would otherwise have been chosen, since load.
 struct MappingStatistics {
-  std::uint64_t mapped = 0;          // choices made
-  std::uint64_t tangent_plane = 0;   // the nearest point lay above the tangent plane
+  std::uint64_t mapped = 0;           // choices made
+  std::uint64_t tangent_plane = 0;    // the nearest point lay above the tangent plane
   std::uint64_t shared_particle = 0;  // the nearest point below it shared no particle with a neighbouring vertex
-  std::uint64_t relaxed = 0;         // no point met all criteria: the nearest that the graph connects was taken
+  std::uint64_t relaxed = 0;          // no point met all criteria: the nearest that the graph connects was taken
 };
 
-/// Vertices that follow the tissue. Candidates are only points that the graph connects to the vertex, so a mapping across a
-/// cut is impossible whatever the criteria say.
+/// Vertices that follow the tissue. Candidates are only points that the graph connects to the vertex, so a mapping
+/// across a cut is impossible whatever the criteria say.
 class VertexMapping {
  public:
   VertexMapping(const IntegrationPoints& points, const ShapeFunctions& shape, const Tissue& tissue);
 
-  /// Adds a vertex at rest position X (m, object frame) whose material belongs to lattice vertex `anchor`; not mapped yet.
+  /// Adds a vertex at rest position X (m, object frame) whose material belongs to lattice vertex `anchor`; not mapped
+  /// yet.
   void Add(const Eigen::Vector3d& X, int anchor);
 
   /// Forgets the mapping of v, so that it puts no condition on its neighbours until it is mapped again.

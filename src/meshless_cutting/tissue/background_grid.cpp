@@ -35,7 +35,8 @@ int BackgroundGrid::NodeIndex(const Eigen::Vector3i& c) const {
 }
 
 Eigen::Vector3i BackgroundGrid::NodeCoordinates(int node) const {
-  return Eigen::Vector3i(node % nodes_[0], node / nodes_[0] % nodes_[1], node / (nodes_[0] * nodes_[1])).array() - margin_;
+  return Eigen::Vector3i(node % nodes_[0], node / nodes_[0] % nodes_[1], node / (nodes_[0] * nodes_[1])).array() -
+         margin_;
 }
 
 Eigen::Vector3d BackgroundGrid::NodePosition(int node) const { return CellCorner(NodeCoordinates(node)); }

@@ -6,8 +6,8 @@
 
 namespace meshless_cutting {
 
-/// A box of cells around the object at rest, fitted per axis so that the bounding box is a whole number of cells. Nodes reach
-/// `margin` layers beyond the cells for wide supports.
+/// A box of cells around the object at rest, fitted per axis so that the bounding box is a whole number of cells. Nodes
+/// reach `margin` layers beyond the cells for wide supports.
 class BackgroundGrid {
  public:
   /// Fits cells of about `cell_size` (m) to [min, max].

@@ -6,8 +6,8 @@
 namespace meshless_cutting {
 namespace {
 
-// How far off the faces of a cell the window is evaluated, in cells. Smaller: closer to plain trilinear at the faces under wide
-// supports; larger: a better conditioned moment matrix for points at or outside a face.
+// How far off the faces of a cell the window is evaluated, in cells. Smaller: closer to plain trilinear at the faces
+// under wide supports; larger: a better conditioned moment matrix for points at or outside a face.
 constexpr double kWindowMargin = 0.05;
 
 struct Window {

@@ -10,10 +10,11 @@ namespace meshless_cutting {
 
 /// MLS shape functions of the particles in the support of a cell: the nodes within `radius` cells of its centre.
 ///
-/// The window of a particle is a product of hat functions, wide enough to cover the support from anywhere in the cell. With the
-/// eight corners (radius 0.9) the hats alone reproduce linear fields, so MLS *is* trilinear interpolation there: continuous
-/// from cell to cell. The window is evaluated inside the cell, a small margin off its faces, while the linear basis takes the true
-/// point: outside the cell the field goes on linearly and the moment matrix stays regular.
+/// The window of a particle is a product of hat functions, wide enough to cover the support from anywhere in the cell.
+/// With the eight corners (radius 0.9) the hats alone reproduce linear fields, so MLS *is* trilinear interpolation
+/// there: continuous from cell to cell. The window is evaluated inside the cell, a small margin off its faces, while
+/// the linear basis takes the true point: outside the cell the field goes on linearly and the moment matrix stays
+/// regular.
 class ShapeFunctions {
  public:
   /// Layers of nodes beyond the cell's own corners that a support of `radius` cells needs in the grid.

@@ -13,12 +13,13 @@ namespace meshless_cutting {
 
 /// A pose of the tool in the scene frame as it came in. Nothing is assumed of its values.
 struct ToolSample {
-  double time_s = 0;             // on the clock of the session
+  double time_s = 0;  // on the clock of the session
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Vector4d orientation_xyzw = Eigen::Vector4d::UnitW();
 };
 
-/// What became of a sample. Everything but kAccepted and kJump is refused and only counted; a jump re-anchors the blade.
+/// What became of a sample. Everything but kAccepted and kJump is refused and only counted; a jump re-anchors the
+/// blade.
 enum class SampleVerdict { kAccepted, kNotFinite, kZeroQuaternion, kBackInTime, kDuplicate, kJump };
 inline constexpr int kSampleVerdicts = 6;
 
@@ -34,8 +35,8 @@ class Tool {
   /// Before the first sample, and when none came for config.timeout_s, the blade is inactive (empty motion).
   BladeMotion Move(double t0_s, double t1_s);
 
-  /// A blade that bends: replaces the polyline (tool frame, m) from the next frame on. False (and unchanged) when the number of points
-  /// differs or a coordinate is not finite.
+  /// A blade that bends: replaces the polyline (tool frame, m) from the next frame on. False (and unchanged) when the
+  /// number of points differs or a coordinate is not finite.
   bool SetEdge(const std::vector<Eigen::Vector3d>& points);
 
   const ToolConfig& config() const { return config_; }
@@ -56,9 +57,10 @@ class Tool {
   std::vector<Eigen::Vector3d> edge_;       // polyline, tool frame, m
   std::vector<Eigen::Vector3d> edge_next_;  // what edge_ becomes in the next frame
   std::vector<Queued> queue_;
-  std::optional<Queued> newest_;                 // last accepted sample, for the screening
-  std::optional<Eigen::Isometry3d> T_WT_;        // at the end of the last frame
-  std::optional<std::vector<Eigen::Vector3d>> blade_;  // polyline at the end of the last frame while active, scene frame
+  std::optional<Queued> newest_;           // last accepted sample, for the screening
+  std::optional<Eigen::Isometry3d> T_WT_;  // at the end of the last frame
+  std::optional<std::vector<Eigen::Vector3d>>
+      blade_;  // polyline at the end of the last frame while active, scene frame
   double last_sample_s_ = 0;
   int jumps_ = 0;
 };
