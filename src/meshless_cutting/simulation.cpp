@@ -117,7 +117,7 @@ struct Simulation::Parts {
     dynamics = std::make_unique<Dynamics>(MakeDynamicsConfig(scene), body->tissue());
     if (built.tools) cutting.emplace(scene, *body);
     events.clear();
-    statistics = StepStatistics();
+    statistics = FrameStatistics();
     statistics.time_s = start_s;
     Count();
   }
@@ -137,8 +137,8 @@ struct Simulation::Parts {
   std::unique_ptr<SoftBody> body;
   std::unique_ptr<Dynamics> dynamics;
   std::optional<Cutting> cutting;
-  std::vector<CutEvent> events;
-  StepStatistics statistics;
+  std::vector<StrokeEvent> events;
+  FrameStatistics statistics;
 };
 
 // ---- One frame, in the order of the paper's section 2.3
@@ -146,7 +146,7 @@ struct Simulation::Parts {
 
 void Simulation::Step() {
   Parts& p = *parts_;
-  StepStatistics& s = p.statistics;
+  FrameStatistics& s = p.statistics;
   const double t0_s = p.start_s + static_cast<double>(s.step) * p.scene.time_step_s;
   const double t1_s = p.start_s + static_cast<double>(s.step + 1) * p.scene.time_step_s;
   Stopwatch watch;
@@ -220,9 +220,9 @@ void Simulation::Parts::Cut() {
   }
   for (auto& state : cutting->tools) state.strokes.Record(state.cut, events);
   if (body->surface().fragment_volume_m3.size() > fragments_before) {
-    CutEvent event;
-    event.type = CutEventType::kSeparated;
-    for (const CutEvent& cause : events)
+    StrokeEvent event;
+    event.type = StrokeEventType::kSeparated;
+    for (const StrokeEvent& cause : events)
       if (cause.links_cut > 0 && event.tool < 0) {
         event.tool = cause.tool;
         event.stroke = cause.stroke;
@@ -278,8 +278,8 @@ bool Simulation::SetToolEdge(int tool, const std::vector<Eigen::Vector3d>& point
 void Simulation::StartAt(double time_s) { parts_->start_s = parts_->statistics.time_s = time_s; }
 
 const Surface& Simulation::surface() const { return parts_->body->surface(); }
-const std::vector<CutEvent>& Simulation::events() const { return parts_->events; }
-const StepStatistics& Simulation::statistics() const { return parts_->statistics; }
+const std::vector<StrokeEvent>& Simulation::events() const { return parts_->events; }
+const FrameStatistics& Simulation::statistics() const { return parts_->statistics; }
 const BuiltParts& Simulation::parts() const { return parts_->built; }
 const Scene& Simulation::scene() const { return parts_->scene; }
 const LatticeReport& Simulation::lattice_report() const { return parts_->lattice_report; }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cut/cut_event.h"
+#include "cut/stroke_event.h"
 #include "dynamics/dynamics.h"
 #include "lattice/lattice_builder.h"
 #include "scene/scene.h"
@@ -20,7 +20,7 @@ namespace meshless_cutting {
 
 /// What one frame cost and how good it is. Times are wall times of this run and the only thing here that is not
 /// reproducible.
-struct StepStatistics {
+struct FrameStatistics {
   std::uint64_t step = 0;  // frames since load or reset, this one included
   double time_s = 0;       // simulated time at its end
   std::uint32_t status = kStepOk;
@@ -62,8 +62,8 @@ class Simulation {
 
   // What the last Step() left; valid until the next one.
   const Surface& surface() const;
-  const std::vector<CutEvent>& events() const;
-  const StepStatistics& statistics() const;
+  const std::vector<StrokeEvent>& events() const;
+  const FrameStatistics& statistics() const;
   const BuiltParts& parts() const;
 
   const Scene& scene() const;

@@ -103,8 +103,8 @@ SurfacePositionsPtr ToPositions(const Scene& scene, const Surface& surface, cons
   return message;
 }
 
-CutEventMsgPtr ToCutEvent(const Scene& scene, const CutEvent& event, const FrameTag& tag) {
-  auto message = boost::make_shared<CutEventMsg>();
+CutEventPtr ToCutEvent(const Scene& scene, const StrokeEvent& event, const FrameTag& tag) {
+  auto message = boost::make_shared<CutEvent>();
   message->header = Header(scene, tag);
   message->object = scene.object.name;
   if (event.tool >= 0 && event.tool < static_cast<int>(scene.tools.size()))
@@ -124,9 +124,9 @@ CutEventMsgPtr ToCutEvent(const Scene& scene, const CutEvent& event, const Frame
   return message;
 }
 
-StepStatisticsMsgPtr ToStatistics(const Scene& scene, const StepStatistics& statistics, const FrameTag& tag,
+StepStatisticsPtr ToStatistics(const Scene& scene, const FrameStatistics& statistics, const FrameTag& tag,
                                   std::int64_t input_until_ns, bool with_wall_times) {
-  auto message = boost::make_shared<StepStatisticsMsg>();
+  auto message = boost::make_shared<StepStatistics>();
   message->header = Header(scene, tag);
   message->session = tag.session;
   message->step = tag.step;
@@ -163,7 +163,7 @@ SessionInfoPtr ToSessionInfo(const Simulation& simulation, const FrameTag& tag) 
   const Scene& scene = simulation.scene();
   const BuiltParts& parts = simulation.parts();
   const LatticeReport& lattice = simulation.lattice_report();
-  const StepStatistics& sizes = simulation.statistics();
+  const FrameStatistics& sizes = simulation.statistics();
   auto message = boost::make_shared<SessionInfo>();
   message->header = Header(scene, tag);
   message->session = tag.session;

@@ -32,9 +32,9 @@ SurfaceTopologyPtr ToTopology(const Scene& scene, const Surface& surface, const 
 /// `not_finite` counts the positions that are not, if given.
 SurfacePositionsPtr ToPositions(const Scene& scene, const Surface& surface, const FrameTag& tag,
                                 int* not_finite = nullptr);
-CutEventMsgPtr ToCutEvent(const Scene& scene, const CutEvent& event, const FrameTag& tag);
+CutEventPtr ToCutEvent(const Scene& scene, const StrokeEvent& event, const FrameTag& tag);
 /// `with_wall_times` false leaves all that depends on the machine at 0.
-StepStatisticsMsgPtr ToStatistics(const Scene& scene, const StepStatistics& statistics, const FrameTag& tag,
+StepStatisticsPtr ToStatistics(const Scene& scene, const FrameStatistics& statistics, const FrameTag& tag,
                                   std::int64_t input_until_ns, bool with_wall_times);
 SessionInfoPtr ToSessionInfo(const Simulation& simulation, const FrameTag& tag);
 

@@ -20,8 +20,8 @@ constexpr int kQueue = 200;
 Publishers::Publishers(ros::NodeHandle nh, std::function<void()> every_second)
     : topology_(nh.advertise<SurfaceTopology>(kTopologyTopic, kQueue, true)),
       positions_(nh.advertise<SurfacePositions>(kPositionsTopic, kQueue)),
-      cut_events_(nh.advertise<CutEventMsg>(kCutEventsTopic, 1000)),
-      statistics_(nh.advertise<StepStatisticsMsg>(kStatisticsTopic, kQueue)),
+      cut_events_(nh.advertise<CutEvent>(kCutEventsTopic, 1000)),
+      statistics_(nh.advertise<StepStatistics>(kStatisticsTopic, kQueue)),
       session_(nh.advertise<SessionInfo>(kSessionTopic, 1, true)),
       marker_(nh.advertise<visualization_msgs::Marker>(kMarkerTopic, 50)),
       mapping_marker_(nh.advertise<visualization_msgs::MarkerArray>(kMappingMarkerTopic, 2)),
@@ -77,7 +77,7 @@ void Publishers::Publish(const FrameView& view) {
     topology_.publish(messages.topology);
   }
   positions_.publish(messages.positions);
-  for (const CutEventMsgConstPtr& event : messages.events) cut_events_.publish(event);
+  for (const CutEventConstPtr& event : messages.events) cut_events_.publish(event);
   if (messages.statistics) statistics_.publish(messages.statistics);
 }
 

@@ -96,7 +96,7 @@ FrameMessages Session::Step(std::int64_t input_end_ns) {
   int not_finite = 0;
   messages.positions = ToPositions(scene, surface, tag, &not_finite);
   not_finite_ += static_cast<std::uint64_t>(not_finite);
-  for (const CutEvent& event : simulation_.events()) messages.events.push_back(ToCutEvent(scene, event, tag));
+  for (const StrokeEvent& event : simulation_.events()) messages.events.push_back(ToCutEvent(scene, event, tag));
   messages.statistics =
       ToStatistics(scene, simulation_.statistics(), tag, input_end_ns, wall_times_ == WallTimes::kInStatistics);
   return messages;

@@ -21,8 +21,8 @@ struct FrameMessages {
   SessionInfoConstPtr session;         // only at the start of a session
   SurfaceTopologyConstPtr topology;    // when it changed, and once per simulated second
   SurfacePositionsConstPtr positions;  // belongs to the last topology
-  std::vector<CutEventMsgConstPtr> events;
-  StepStatisticsMsgConstPtr statistics;  // absent before the first frame
+  std::vector<CutEventConstPtr> events;
+  StepStatisticsConstPtr statistics;  // absent before the first frame
 };
 
 /// A blade that bends: its polyline from a time on.

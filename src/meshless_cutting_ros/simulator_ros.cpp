@@ -159,7 +159,7 @@ void SimulatorRos::MakeFrame(std::int64_t input_end_ns) {
   Session& session = *run_.session;
   run_.inputs->HandOver(&session);
   FrameMessages messages = session.Step(input_end_ns);
-  const StepStatistics& statistics = session.simulation().statistics();
+  const FrameStatistics& statistics = session.simulation().statistics();
   monitor_.Add(1e-9 * static_cast<double>(ros::SteadyTime::now().toNSec()), statistics.total_s, run_.scene->time_step_s,
                statistics.status);
   slip_s_ = session.slip_s();

@@ -61,8 +61,8 @@ TEST(MessageConversionsTest, PositionsAndHowManyAreNotFinite) {
 }
 
 TEST(MessageConversionsTest, CutEvents) {
-  CutEvent event;
-  event.type = CutEventType::kSeparated;
+  StrokeEvent event;
+  event.type = StrokeEventType::kSeparated;
   event.tool = 1;
   event.stroke = 2;
   event.links_cut = 5;
@@ -73,7 +73,7 @@ TEST(MessageConversionsTest, CutEvents) {
   event.rest_points = {{4, 5, 6}};
   event.fragment_volume_m3 = {2, 1};
   const auto message = ToCutEvent(SmallScene(), event, kTag);
-  EXPECT_EQ(message->event, CutEventMsg::SEPARATED);
+  EXPECT_EQ(message->event, CutEvent::SEPARATED);
   EXPECT_EQ(message->tool, "knife");
   EXPECT_EQ(message->stroke, 2u);
   EXPECT_EQ(message->links_cut, 5u);
@@ -88,19 +88,19 @@ TEST(MessageConversionsTest, CutEvents) {
 }
 
 TEST(MessageConversionsTest, EventNumbersAreThoseOfTheMessage) {
-  EXPECT_EQ(static_cast<int>(CutEventType::kStarted), CutEventMsg::STARTED);
-  EXPECT_EQ(static_cast<int>(CutEventType::kProgress), CutEventMsg::PROGRESS);
-  EXPECT_EQ(static_cast<int>(CutEventType::kEnded), CutEventMsg::ENDED);
-  EXPECT_EQ(static_cast<int>(CutEventType::kSeparated), CutEventMsg::SEPARATED);
-  EXPECT_EQ(static_cast<int>(CutEventType::kJumpRefused), CutEventMsg::JUMP_REFUSED);
-  EXPECT_EQ(static_cast<std::uint32_t>(kStepNotConverged), StepStatisticsMsg::NOT_CONVERGED);
-  EXPECT_EQ(static_cast<std::uint32_t>(kStepRolledBack), StepStatisticsMsg::ROLLED_BACK);
-  EXPECT_EQ(static_cast<std::uint32_t>(kStepFrozen), StepStatisticsMsg::FROZEN);
+  EXPECT_EQ(static_cast<int>(StrokeEventType::kStarted), CutEvent::STARTED);
+  EXPECT_EQ(static_cast<int>(StrokeEventType::kProgress), CutEvent::PROGRESS);
+  EXPECT_EQ(static_cast<int>(StrokeEventType::kEnded), CutEvent::ENDED);
+  EXPECT_EQ(static_cast<int>(StrokeEventType::kSeparated), CutEvent::SEPARATED);
+  EXPECT_EQ(static_cast<int>(StrokeEventType::kJumpRefused), CutEvent::JUMP_REFUSED);
+  EXPECT_EQ(static_cast<std::uint32_t>(kStepNotConverged), StepStatistics::NOT_CONVERGED);
+  EXPECT_EQ(static_cast<std::uint32_t>(kStepRolledBack), StepStatistics::ROLLED_BACK);
+  EXPECT_EQ(static_cast<std::uint32_t>(kStepFrozen), StepStatistics::FROZEN);
   EXPECT_EQ(static_cast<int>(SurfaceRegion::kCutFace), SurfaceTopology::CUT_FACE);
 }
 
 TEST(MessageConversionsTest, StatisticsWithAndWithoutWallTimes) {
-  StepStatistics statistics;
+  FrameStatistics statistics;
   statistics.total_s = 0.02;
   statistics.cut_s = 0.001;
   statistics.particles = 11;
@@ -112,7 +112,7 @@ TEST(MessageConversionsTest, StatisticsWithAndWithoutWallTimes) {
   EXPECT_TRUE(timed->missed);
   EXPECT_EQ(timed->particles, 11u);
   EXPECT_EQ(timed->elastic_j, 1.5);
-  EXPECT_EQ(timed->status, StepStatisticsMsg::NOT_CONVERGED);
+  EXPECT_EQ(timed->status, StepStatistics::NOT_CONVERGED);
   EXPECT_EQ(timed->input_until, ros::Time(0, 99));
   const auto untimed = ToStatistics(SmallScene(), statistics, kTag, 99, false);
   EXPECT_EQ(untimed->total_s, 0);

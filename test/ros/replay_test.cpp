@@ -113,8 +113,8 @@ TEST_F(ReplayTest, CutsTheBlockInTwo) {
 
   const auto topologies = Read<SurfaceTopology>("/simulator/surface/topology");
   const auto positions = Read<SurfacePositions>("/simulator/surface/positions");
-  const auto statistics = Read<StepStatisticsMsg>("/simulator/statistics");
-  const auto events = Read<CutEventMsg>("/simulator/cut_events");
+  const auto statistics = Read<StepStatistics>("/simulator/statistics");
+  const auto events = Read<CutEvent>("/simulator/cut_events");
   const auto sessions = Read<SessionInfo>("/simulator/session");
   ASSERT_EQ(sessions.size(), 1u);
   EXPECT_EQ(sessions[0]->scene_text, Text(BlockScene()));
@@ -127,10 +127,10 @@ TEST_F(ReplayTest, CutsTheBlockInTwo) {
   for (const auto& topology : topologies) versions.insert(topology->version);
   for (const auto& position : positions) EXPECT_TRUE(versions.count(position->version)) << position->version;
   ASSERT_FALSE(events.empty());
-  EXPECT_EQ(events.front()->event, CutEventMsg::STARTED);
+  EXPECT_EQ(events.front()->event, CutEvent::STARTED);
   EXPECT_EQ(events.front()->tool, "scalpel");
   bool separated = false;
-  for (const auto& event : events) separated = separated || event->event == CutEventMsg::SEPARATED;
+  for (const auto& event : events) separated = separated || event->event == CutEvent::SEPARATED;
   EXPECT_TRUE(separated);
 }
 
@@ -167,7 +167,7 @@ TEST_F(ReplayTest, CutsWithAFrameOfTf) {
                 {"block_tf.yaml:14: key `tools[0].urdf_link`: blade: expected a robot description"});
   const Outcome outcome = Replay(Arguments("in.bag", scene) + " --urdf " MESHLESS_CUTTING_TEST_DIR "/data/blade.urdf");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(Read<StepStatisticsMsg>("/simulator/statistics").back()->fragments, 2u);
+  EXPECT_EQ(Read<StepStatistics>("/simulator/statistics").back()->fragments, 2u);
 }
 
 TEST_F(ReplayTest, ReportsBadSamplesAndGoesOn) {
@@ -184,7 +184,7 @@ TEST_F(ReplayTest, ReportsBadSamplesAndGoesOn) {
   for (const char* fault : {"not finite, 1 samples", "zero quaternion, 1 samples", "back in time, 1 samples"}) {
     EXPECT_NE(outcome.out.find(fault), std::string::npos) << outcome.out;
   }
-  EXPECT_EQ(Read<StepStatisticsMsg>("/simulator/statistics").back()->fragments, 2u);
+  EXPECT_EQ(Read<StepStatistics>("/simulator/statistics").back()->fragments, 2u);
 }
 
 TEST_F(ReplayTest, ABagCutOffInTheMiddleIsUsedAsFarAsItGoes) {
@@ -242,7 +242,7 @@ TEST_F(ReplayTest, ReplaysWhatTheToolPlayerWrites) {
   const Outcome outcome = Replay(Arguments());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("501 samples of /simulator/scalpel/measured_cp"), std::string::npos) << outcome.out;
-  EXPECT_EQ(Read<StepStatisticsMsg>("/simulator/statistics").back()->fragments, 2u);
+  EXPECT_EQ(Read<StepStatistics>("/simulator/statistics").back()->fragments, 2u);
 }
 
 }  // namespace

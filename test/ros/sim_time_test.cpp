@@ -14,8 +14,8 @@ class SimTimeTest : public testing::Test {
   SimTimeTest()
       : clock_(nh_.advertise<rosgraph_msgs::Clock>("/clock", 10)),
         poses_(nh_.advertise<geometry_msgs::PoseStamped>("/simulator/scalpel/measured_cp", 1000)),
-        statistics_sub_(nh_.subscribe<StepStatisticsMsg>("/simulator/statistics", 1000,
-                                                         [this](const StepStatisticsMsgConstPtr& m) { last_ = m; })) {
+        statistics_sub_(nh_.subscribe<StepStatistics>("/simulator/statistics", 1000,
+                                                         [this](const StepStatisticsConstPtr& m) { last_ = m; })) {
     for (int i = 0; i < 2000 && (poses_.getNumSubscribers() == 0 || statistics_sub_.getNumPublishers() == 0); ++i)
       Spin();
     for (int i = 0; i < 2000 && clock_.getNumSubscribers() < 2; ++i) Spin();  // this node and the simulator
@@ -48,7 +48,7 @@ class SimTimeTest : public testing::Test {
   ros::NodeHandle nh_;
   ros::Publisher clock_, poses_;
   ros::Subscriber statistics_sub_;
-  StepStatisticsMsgConstPtr last_;
+  StepStatisticsConstPtr last_;
 };
 
 TEST_F(SimTimeTest, FollowsTheClockAndRestartsWhenItGoesBack) {
@@ -56,7 +56,7 @@ TEST_F(SimTimeTest, FollowsTheClockAndRestartsWhenItGoesBack) {
   ASSERT_TRUE(last_);
   EXPECT_EQ(last_->fragments, 2u);
   EXPECT_NEAR(last_->header.stamp.toSec(), 50.7, 0.1);
-  const StepStatisticsMsgConstPtr stood = last_;
+  const StepStatisticsConstPtr stood = last_;
   for (int i = 0; i < 60; ++i) Spin();
   EXPECT_EQ(last_->step, stood->step) << "the clock stands, the simulation stands";
 

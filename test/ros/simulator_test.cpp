@@ -31,10 +31,10 @@ class SimulatorTest : public testing::Test {
         "/simulator/surface/topology", 100, [this](const SurfaceTopologyConstPtr& m) { topologies_.push_back(m); });
     positions_sub_ = nh_.subscribe<SurfacePositions>(
         "/simulator/surface/positions", 1000, [this](const SurfacePositionsConstPtr& m) { positions_.push_back(m); });
-    events_sub_ = nh_.subscribe<CutEventMsg>("/simulator/cut_events", 1000,
-                                             [this](const CutEventMsgConstPtr& m) { events_.push_back(m); });
-    statistics_sub_ = nh_.subscribe<StepStatisticsMsg>(
-        "/simulator/statistics", 1000, [this](const StepStatisticsMsgConstPtr& m) { statistics_.push_back(m); });
+    events_sub_ = nh_.subscribe<CutEvent>("/simulator/cut_events", 1000,
+                                             [this](const CutEventConstPtr& m) { events_.push_back(m); });
+    statistics_sub_ = nh_.subscribe<StepStatistics>(
+        "/simulator/statistics", 1000, [this](const StepStatisticsConstPtr& m) { statistics_.push_back(m); });
     session_sub_ =
         nh_.subscribe<SessionInfo>("/simulator/session", 10, [this](const SessionInfoConstPtr& m) { session_ = m; });
     diagnostics_sub_ = nh_.subscribe<diagnostic_msgs::DiagnosticArray>(
@@ -112,8 +112,8 @@ class SimulatorTest : public testing::Test {
   ros::Subscriber topology_sub_, positions_sub_, events_sub_, statistics_sub_, session_sub_, diagnostics_sub_;
   std::vector<SurfaceTopologyConstPtr> topologies_;
   std::vector<SurfacePositionsConstPtr> positions_;
-  std::vector<CutEventMsgConstPtr> events_;
-  std::vector<StepStatisticsMsgConstPtr> statistics_;
+  std::vector<CutEventConstPtr> events_;
+  std::vector<StepStatisticsConstPtr> statistics_;
   SessionInfoConstPtr session_;
   std::map<std::string, std::string> diagnostics_;
 };
@@ -151,8 +151,8 @@ TEST_F(SimulatorTest, CutsWithPosesAndWithTransforms) {
   EXPECT_TRUE(Until([this] { return !statistics_.empty() && statistics_.back()->fragments == 3; }));
   bool scalpel = false, probe = false;
   for (const auto& event : events_) {
-    scalpel = scalpel || (event->tool == "scalpel" && event->event == CutEventMsg::STARTED);
-    probe = probe || (event->tool == "probe" && event->event == CutEventMsg::STARTED);
+    scalpel = scalpel || (event->tool == "scalpel" && event->event == CutEvent::STARTED);
+    probe = probe || (event->tool == "probe" && event->event == CutEvent::STARTED);
   }
   EXPECT_TRUE(scalpel);
   EXPECT_TRUE(probe);

@@ -33,13 +33,13 @@ TEST(SteppedTest, NodeAndReplayAgreeToTheBit) {
   const ReplayResult result = RunReplay(options, [](double, const std::string&) { return true; });
   std::map<std::uint64_t, SurfacePositionsConstPtr> replayed;
   std::map<std::uint64_t, SurfaceTopologyConstPtr> replayed_topologies;
-  std::map<std::uint64_t, StepStatisticsMsgConstPtr> replayed_statistics;
+  std::map<std::uint64_t, StepStatisticsConstPtr> replayed_statistics;
   {
     const rosbag::Bag bag(options.output, rosbag::bagmode::Read);
     for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
       if (const auto positions = message.instantiate<SurfacePositions>()) replayed[positions->step] = positions;
       if (const auto topology = message.instantiate<SurfaceTopology>()) replayed_topologies[topology->step] = topology;
-      if (const auto statistics = message.instantiate<StepStatisticsMsg>())
+      if (const auto statistics = message.instantiate<StepStatistics>())
         replayed_statistics[statistics->step] = statistics;
     }
   }
@@ -50,13 +50,13 @@ TEST(SteppedTest, NodeAndReplayAgreeToTheBit) {
   ros::NodeHandle nh;
   std::map<std::uint64_t, SurfacePositionsConstPtr> live;
   std::map<std::uint64_t, SurfaceTopologyConstPtr> topologies;
-  std::map<std::uint64_t, StepStatisticsMsgConstPtr> statistics;
+  std::map<std::uint64_t, StepStatisticsConstPtr> statistics;
   const auto positions_sub = nh.subscribe<SurfacePositions>(
       "/simulator/surface/positions", 1000, [&](const SurfacePositionsConstPtr& m) { live[m->step] = m; });
   const auto topology_sub = nh.subscribe<SurfaceTopology>(
       "/simulator/surface/topology", 1000, [&](const SurfaceTopologyConstPtr& m) { topologies[m->step] = m; });
-  const auto statistics_sub = nh.subscribe<StepStatisticsMsg>(
-      "/simulator/statistics", 1000, [&](const StepStatisticsMsgConstPtr& m) { statistics[m->step] = m; });
+  const auto statistics_sub = nh.subscribe<StepStatistics>(
+      "/simulator/statistics", 1000, [&](const StepStatisticsConstPtr& m) { statistics[m->step] = m; });
   const auto poses = nh.advertise<geometry_msgs::PoseStamped>(kTopic, 1000);
   for (int i = 0; i < 2000 && (poses.getNumSubscribers() == 0 || positions_sub.getNumPublishers() == 0 ||
                                topology_sub.getNumPublishers() == 0 || statistics_sub.getNumPublishers() == 0);

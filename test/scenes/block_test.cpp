@@ -40,10 +40,10 @@ TEST(Block, FallsInTwoWhenTheBladePasses) {
     ASSERT_EQ(simulation.CheckInvariants(), "") << "step " << step;
     ASSERT_NEAR(RestVolume(simulation.surface()), volume, 1e-6 * volume);
     for (const Eigen::Vector3d& x : simulation.surface().positions) ASSERT_TRUE(x.allFinite());
-    for (const CutEvent& event : simulation.events()) {
-      started += event.type == CutEventType::kStarted;
-      ended += event.type == CutEventType::kEnded;
-      if (event.type == CutEventType::kSeparated) {
+    for (const StrokeEvent& event : simulation.events()) {
+      started += event.type == StrokeEventType::kStarted;
+      ended += event.type == StrokeEventType::kEnded;
+      if (event.type == StrokeEventType::kSeparated) {
         EXPECT_EQ(separated_step, -1);
         separated_step = step;
         EXPECT_EQ(event.fragment_volume_m3.size(), 2u);

@@ -8,21 +8,21 @@ namespace meshless_cutting {
 // one.
 constexpr double kStrokeIdle_s = 0.5;
 
-void StrokeLog::Record(const FrameCut& cut, std::vector<CutEvent>& events) {
+void StrokeLog::Record(const FrameCut& cut, std::vector<StrokeEvent>& events) {
   for (int i = 0; i < cut.jumps; ++i) {
-    CutEvent event;
-    event.type = CutEventType::kJumpRefused;
+    StrokeEvent event;
+    event.type = StrokeEventType::kJumpRefused;
     event.tool = tool_;
     event.stroke = sum_.stroke;
     events.push_back(event);
   }
   if (!cut.crossings.empty()) {
-    CutEvent event;
-    event.type = open_ ? CutEventType::kProgress : CutEventType::kStarted;
+    StrokeEvent event;
+    event.type = open_ ? StrokeEventType::kProgress : StrokeEventType::kStarted;
     if (!open_) {
       const int stroke = sum_.stroke + 1;
-      sum_ = CutEvent();
-      sum_.type = CutEventType::kEnded;
+      sum_ = StrokeEvent();
+      sum_.type = StrokeEventType::kEnded;
       sum_.tool = tool_;
       sum_.stroke = stroke;
       open_ = true;

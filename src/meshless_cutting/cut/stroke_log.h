@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "crossing/find_crossings.h"
-#include "cut/cut_event.h"
+#include "cut/stroke_event.h"
 
 namespace meshless_cutting {
 
@@ -24,14 +24,14 @@ class StrokeLog {
   StrokeLog(int tool, double time_step_s) : tool_(tool), time_step_s_(time_step_s) {}
 
   /// Appends the events of this frame, in order.
-  void Record(const FrameCut& cut, std::vector<CutEvent>& events);
+  void Record(const FrameCut& cut, std::vector<StrokeEvent>& events);
 
  private:
   int tool_;
   double time_step_s_;
   bool open_ = false;
   double idle_s_ = 0;
-  CutEvent sum_;
+  StrokeEvent sum_;
 };
 
 }  // namespace meshless_cutting

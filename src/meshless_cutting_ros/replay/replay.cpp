@@ -47,7 +47,7 @@ class Writer {
     if (messages.session) bag_->write(prefix_ + kSessionTopic, time, *messages.session);
     if (messages.topology) bag_->write(prefix_ + kTopologyTopic, time, *messages.topology);
     bag_->write(prefix_ + kPositionsTopic, time, *messages.positions);
-    for (const CutEventMsgConstPtr& event : messages.events) bag_->write(prefix_ + kCutEventsTopic, time, *event);
+    for (const CutEventConstPtr& event : messages.events) bag_->write(prefix_ + kCutEventsTopic, time, *event);
     if (messages.statistics) bag_->write(prefix_ + kStatisticsTopic, time, *messages.statistics);
   }
 

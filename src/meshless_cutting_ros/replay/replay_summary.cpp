@@ -17,12 +17,12 @@ double Percentile(std::vector<double> values, double share) {
 
 void ReplaySummary::Add(const Simulation& simulation) {
   frame_s_.push_back(simulation.statistics().total_s);
-  for (const CutEvent& event : simulation.events()) {
-    if (event.type == CutEventType::kStarted) ++strokes_;
-    if (event.type == CutEventType::kStarted || event.type == CutEventType::kProgress) area_m2_ += event.area_m2;
-    if (event.type == CutEventType::kStarted || event.type == CutEventType::kProgress)
+  for (const StrokeEvent& event : simulation.events()) {
+    if (event.type == StrokeEventType::kStarted) ++strokes_;
+    if (event.type == StrokeEventType::kStarted || event.type == StrokeEventType::kProgress) area_m2_ += event.area_m2;
+    if (event.type == StrokeEventType::kStarted || event.type == StrokeEventType::kProgress)
       open_length_m_[event.tool] = event.length_m;  // so far in the stroke
-    if (event.type == CutEventType::kEnded) {
+    if (event.type == StrokeEventType::kEnded) {
       length_m_ += event.length_m;
       open_length_m_.erase(event.tool);
     }
@@ -30,7 +30,7 @@ void ReplaySummary::Add(const Simulation& simulation) {
 }
 
 std::string ReplaySummary::Words(const Simulation& simulation) const {
-  const StepStatistics& statistics = simulation.statistics();
+  const FrameStatistics& statistics = simulation.statistics();
   double length_m = length_m_;
   for (const auto& [tool, length] : open_length_m_) length_m += length;
   char line[400];

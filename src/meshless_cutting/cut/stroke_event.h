@@ -7,12 +7,12 @@
 
 namespace meshless_cutting {
 
-enum class CutEventType : std::uint8_t { kStarted = 0, kProgress = 1, kEnded = 2, kSeparated = 3, kJumpRefused = 4 };
+enum class StrokeEventType : std::uint8_t { kStarted = 0, kProgress = 1, kEnded = 2, kSeparated = 3, kJumpRefused = 4 };
 
 /// Something that a tool did during a frame. STARTED and PROGRESS carry what this frame cut, ENDED the sums of the
 /// stroke.
-struct CutEvent {
-  CutEventType type = CutEventType::kProgress;
+struct StrokeEvent {
+  StrokeEventType type = StrokeEventType::kProgress;
   int tool = -1;   // index in the scene
   int stroke = 0;  // counts the strokes of this tool from 1
   int links_cut = 0;
