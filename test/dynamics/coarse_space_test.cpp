@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <cstring>
 #include <random>
 #include <set>
 
 #include "dynamics/aggregates.h"
+#include "dynamics/dynamics.h"
 #include "dynamics/fragments.h"
 #include "dynamics/skyline_cholesky.h"
 #include "support/box_tissue.h"
@@ -111,6 +114,81 @@ TEST(Aggregates, CoverWhatMovesAndSpanNoCut) {
     for (int c = 1; c < 4; ++c) EXPECT_LT(std::min(std::abs(product(c, c)), std::abs(product(c, c) - 1)), 1e-6);
     EXPECT_LT((product - Eigen::Matrix4d(product.diagonal().asDiagonal())).norm(), 1e-6);
   }
+}
+
+TEST(Aggregates, TwinsJoinTheAggregateOfTheParticleThatTheyCameFrom) {
+  BoxTissueConfig box;
+  box.cells = {8, 4, 4};
+  box.size = {0.08, 0.04, 0.04};
+  Tissue tissue = MakeBoxTissue(box);
+  std::vector<double> free(tissue.particle_count(), 1);
+  free[3] = 0;
+  Aggregates aggregates;
+  aggregates.Build(tissue, free, 6);
+  const Aggregates before = aggregates;
+  const int known = tissue.particle_count();
+  for (int j : {100, 3, 17}) tissue.particle_rest.push_back(Eigen::Vector3d(tissue.particle_rest[j]));
+  tissue.particle_rest.push_back(Eigen::Vector3d(1, 2, 3));  // nobody's twin
+  free[100] = 0;                                             // all its points went to the twin
+  free.resize(known + 4, 1);
+  aggregates.Extend(tissue, free);
+  EXPECT_EQ(aggregates.count(), before.count());
+  EXPECT_EQ(aggregates.of_particle[100], -1);
+  EXPECT_EQ(aggregates.of_particle[known], before.of_particle[100]);
+  EXPECT_EQ(aggregates.of_particle[known + 1], -1);  // the twin of one that was in none
+  EXPECT_EQ(aggregates.of_particle[known + 2], before.of_particle[17]);
+  EXPECT_EQ(aggregates.of_particle[known + 3], -1);
+  EXPECT_EQ(std::memcmp(&aggregates.basis[known], &before.basis[100], sizeof(Vector4)), 0);
+  std::vector<int> listed(known + 4);
+  for (int a = 0; a < aggregates.count(); ++a) {
+    for (int i = aggregates.begin[a]; i < aggregates.begin[a + 1]; ++i) {
+      EXPECT_EQ(aggregates.of_particle[aggregates.particles[i]], a);
+      ++listed[aggregates.particles[i]];
+    }
+  }
+  for (int j = 0; j < known + 4; ++j) EXPECT_EQ(listed[j], aggregates.of_particle[j] >= 0) << j;
+}
+
+/// How many iterations a step takes some frames after a cut, against a solver that never knew the uncut object.
+TEST(Preconditioner, ServesThroughACutAndIsAsGoodAsNewAfterwards) {
+  BoxTissueConfig box;
+  box.cells = {8, 4, 4};
+  box.size = {0.08, 0.04, 0.04};
+  const Tissue whole = MakeBoxTissue(box), halves = CutInTwo();
+  DynamicsConfig config;
+  config.material = {MaterialModel::kStableNeoHookean, 1e5, 0.45, 1000};
+  config.solver.threads = 1;
+  const auto iterations = [&](bool is_cut_while_running) {
+    Dynamics dynamics(config, is_cut_while_running ? whole : halves);
+    TissueState state;
+    state.position = halves.particle_rest;
+    state.position.resize(is_cut_while_running ? whole.particle_count() : halves.particle_count());
+    state.velocity.assign(state.position.size(), Eigen::Vector3d::Zero());
+    const auto kick = [&](const Tissue& tissue) {
+      for (int j = 0; j < tissue.particle_count(); ++j) {
+        state.velocity[j] += Eigen::Vector3d(0, 0.2 * std::sin(80 * tissue.particle_rest[j].x()), 0);
+      }
+    };
+    if (is_cut_while_running) {
+      kick(whole);
+      for (int n = 0; n < 5; ++n) dynamics.Advance(whole, {}, state);
+      // Twins begin where their originals are.
+      state.position = halves.particle_rest;
+      state.velocity.assign(state.position.size(), Eigen::Vector3d::Zero());
+      state.acceleration.assign(state.position.size(), Eigen::Vector3d::Zero());
+      dynamics.TissueChanged(halves);
+    }
+    int late = 0;
+    kick(halves);
+    for (int n = 0; n < 100; ++n) {
+      const AdvanceResult result = dynamics.Advance(halves, {}, state);
+      EXPECT_FALSE(result.status & (kStepRolledBack | kStepFrozen)) << n;
+      if (n >= 60) late += result.linear_iterations;
+    }
+    return late;
+  };
+  const int fresh = iterations(false), cut = iterations(true);
+  EXPECT_LT(cut, 1.2 * fresh) << fresh;
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // Same input, same bits, whatever the number of threads.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdint>
 #include <cstring>
+#include <thread>
 
 #include "dynamics/dynamics.h"
 #include "dynamics/thread_pool.h"
@@ -47,6 +50,23 @@ TEST(ThreadPool, RunsEveryTaskOnce) {
     }
     for (int i = 0; i < 50; ++i) EXPECT_EQ(done[i], 40 * (49 - i));
   }
+}
+
+/// More threads than processors, loops that wait for long tasks, pauses in which threads go to sleep.
+TEST(ThreadPool, SleepersAreWokenAndWaitedFor) {
+  ThreadPool pool(7);
+  std::vector<std::int64_t> sums(64);
+  for (int loop = 0; loop < 300; ++loop) {
+    const int length = loop % 3 == 0 ? 20000 : 10;
+    pool.ForEach(64, [&](int i) {
+      volatile std::int64_t sum = 0;
+      for (int n = 0; n < (i % 9 == 0 ? length : 1); ++n) sum = sum + n;
+      sums[i] += sum + 1;
+    });
+    if (loop % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+  const auto of = [](std::int64_t n) { return n * (n - 1) / 2 + 1; };
+  for (int i = 0; i < 64; ++i) EXPECT_EQ(sums[i], i % 9 == 0 ? 100 * of(20000) + 200 * of(10) : 300) << i;
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST_P(ElasticPointsTest, ProductIsSymmetricPositiveAndMatchesItsDiagonalAndItsC
     }
 
     CoarseMatrix coarse;
-    coarse.TissueChanged(tissue_, std::vector<double>(x.size(), 1), 4);
+    coarse.Build(tissue_, std::vector<double>(x.size(), 1), 4);
     coarse.Clear();
     points.AddCoarse(tangent, 1, coarse);
     // Z e_u for some unknowns u, and Z^T H Z e_u against the matrix; the inertia of 1 makes it solvable.

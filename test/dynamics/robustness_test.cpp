@@ -125,7 +125,7 @@ TEST(Robustness, ClampDraggedAtTenMetresPerSecondComesBack) {
   config.solver.threads = 1;
   Dynamics dynamics(config, tissue);
   TissueState state = RestState(tissue);
-  for (int n = 0; n < 300; ++n) {
+  for (int n = 0; n < 600; ++n) {
     for (int j = 0; j < tissue.particle_count(); ++j) {
       if (n < 30 && tissue.particle_fixed[j]) state.position[j] += (n % 2 == 0 ? 1 : -1) * Eigen::Vector3d(0, 10.0 / 60, 0);
     }

@@ -14,6 +14,14 @@ constexpr int kSmall = 12;
 /// A direction in which the particles spread by less than this share of their largest spread is flat.
 constexpr double kFlat = 1e-6;
 
+/// Aggregates are made larger, at most so often, while there are so many times those that are wanted.
+constexpr double kTooMany = 1.25;
+constexpr int kTries = 3;
+
+bool Before(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
 }  // namespace
 
 int Aggregates::Find(int j) {
@@ -25,6 +33,37 @@ int Aggregates::Find(int j) {
 }
 
 void Aggregates::Build(const Tissue& tissue, const std::vector<double>& free, int wanted) {
+  // Coarse cells that hold little of the object, or several pieces of it, make more aggregates than cells.
+  int aim = wanted;
+  BuildOnce(tissue, free, aim);
+  for (int again = 0; again < kTries && count() > kTooMany * wanted && aim > 1; ++again) {
+    aim = std::max(1, aim * wanted / count());
+    BuildOnce(tissue, free, aim);
+  }
+  BuildBasis(tissue);
+  sites_.clear();
+  for (int j : particles) sites_.push_back({tissue.particle_rest[j], of_particle[j], basis[j]});
+  std::sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return Before(a.X, b.X); });
+}
+
+void Aggregates::Extend(const Tissue& tissue, const std::vector<double>& free) {
+  const std::size_t known = of_particle.size();
+  of_particle.resize(free.size(), -1);
+  basis.resize(free.size());
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    if (free[j] == 0) of_particle[j] = -1;
+    if (free[j] == 0 || j < known) continue;
+    const Eigen::Vector3d& X = tissue.particle_rest[j];
+    const auto site = std::lower_bound(sites_.begin(), sites_.end(), X,
+                                       [](const Site& a, const Eigen::Vector3d& b) { return Before(a.X, b); });
+    if (site == sites_.end() || Before(X, site->X)) continue;
+    of_particle[j] = site->aggregate;
+    basis[j] = site->basis;
+  }
+  List();
+}
+
+void Aggregates::BuildOnce(const Tissue& tissue, const std::vector<double>& free, int wanted) {
   const int count = tissue.particle_count();
   Eigen::AlignedBox3d bounds;
   double volume = 0;
@@ -46,7 +85,6 @@ void Aggregates::Build(const Tissue& tissue, const std::vector<double>& free, in
   Join(tissue);
   MergeSmall(tissue);
   Number(free);
-  BuildBasis(tissue);
 }
 
 void Aggregates::Join(const Tissue& tissue) {
@@ -100,15 +138,26 @@ void Aggregates::Number(const std::vector<double>& free) {
             [&](int a, int b) { return cell_[a] != cell_[b] ? cell_[a] < cell_[b] : a < b; });
   for (int root : particles) {
     number_[root] = count();
-    begin.push_back(begin.back() + size_[root]);
+    begin.push_back(0);
   }
+  for (int j = 0; j < total; ++j) {
+    if (cell_[j] >= 0) of_particle[j] = number_[Find(j)];
+  }
+  List();
+}
+
+/// Particles by aggregate, from of_particle and the number of aggregates.
+void Aggregates::List() {
+  size_.assign(count(), 0);
+  for (int a : of_particle) {
+    if (a >= 0) ++size_[a];
+  }
+  for (int a = 0; a < count(); ++a) begin[a + 1] = begin[a] + size_[a];
   particles.resize(begin.back());
   size_.assign(count(), 0);
-  for (int j = 0; j < total; ++j) {
-    if (cell_[j] < 0) continue;
-    const int a = number_[Find(j)];
-    of_particle[j] = a;
-    particles[begin[a] + size_[a]++] = j;
+  for (std::size_t j = 0; j < of_particle.size(); ++j) {
+    const int a = of_particle[j];
+    if (a >= 0) particles[begin[a] + size_[a]++] = static_cast<int>(j);
   }
 }
 

@@ -4,25 +4,41 @@
 
 namespace meshless_cutting {
 
-void CoarseMatrix::TissueChanged(const Tissue& tissue, const std::vector<double>& free, int wanted_aggregates) {
+void CoarseMatrix::Build(const Tissue& tissue, const std::vector<double>& free, int wanted_aggregates) {
   aggregates_.Build(tissue, free, wanted_aggregates);
-  first_.resize(aggregates_.count());
-  for (int a = 0; a < aggregates_.count(); ++a) first_[a] = a;
-  const std::size_t K = tissue.support_size;
-  for (std::size_t begin = 0; begin < tissue.point_particles.size(); begin += K) {
-    int lowest = aggregates_.count();
-    for (std::size_t k = begin; k < begin + K; ++k) {
-      const int a = aggregates_.of_particle[tissue.point_particles[k]];
-      if (a >= 0) lowest = std::min(lowest, a);
-    }
-    for (std::size_t k = begin; k < begin + K; ++k) {
-      const int a = aggregates_.of_particle[tissue.point_particles[k]];
-      if (a >= 0) first_[a] = std::min(first_[a], lowest);
-    }
-  }
+  ListPoints(tissue);
   first_unknown_.resize(size());
   for (int i = 0; i < size(); ++i) first_unknown_[i] = kUnknowns * first_[i / kUnknowns];
   Clear();
+}
+
+void CoarseMatrix::ListPoints(const Tissue& tissue) {
+  const std::size_t K = tissue.support_size;
+  first_.resize(aggregates_.count());
+  for (int a = 0; a < aggregates_.count(); ++a) first_[a] = a;
+  // Twice the same walk: count, then place.
+  const auto walk = [&](auto&& visit) {
+    for (int p = 0; p < tissue.point_count(); ++p) {
+      const int* support = &tissue.point_particles[p * K];
+      for (std::size_t k = 0; k < K; ++k) {
+        const int a = aggregates_.of_particle[support[k]];
+        bool is_new = a >= 0;
+        for (std::size_t l = 0; l < k && is_new; ++l) is_new = aggregates_.of_particle[support[l]] != a;
+        if (is_new) visit(a, p, support);
+      }
+    }
+  };
+  points_begin_.assign(aggregates_.count() + 2, 0);
+  walk([&](int a, int, const int* support) {
+    ++points_begin_[a + 2];
+    for (std::size_t k = 0; k < K; ++k) {
+      const int b = aggregates_.of_particle[support[k]];
+      if (b >= 0) first_[a] = std::min(first_[a], b);
+    }
+  });
+  for (int a = 0; a < aggregates_.count(); ++a) points_begin_[a + 2] += points_begin_[a + 1];
+  points_.resize(points_begin_.back());
+  walk([&](int a, int p, const int*) { points_[points_begin_[a + 1]++] = p; });
 }
 
 void CoarseMatrix::Add(int a, int c, int b, int d, const double* block) {

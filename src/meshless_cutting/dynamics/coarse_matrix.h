@@ -8,8 +8,8 @@
 
 namespace meshless_cutting {
 
-/// Unknown 12 a + 3 c + i is component i of function c of aggregate a. Two aggregates are coupled when an integration point has
-/// particles of both; the rows of different aggregates may be filled by different threads.
+/// Unknown 12 a + 3 c + i is component i of function c of aggregate a. Two aggregates are coupled when an integration
+/// point has particles of both; the rows of different aggregates may be filled by different threads.
 class CoarseMatrix {
  public:
   static constexpr int kFunctions = 4;
@@ -19,15 +19,23 @@ class CoarseMatrix {
   int size() const { return kUnknowns * aggregates_.count(); }
 
   /// Aggregates, their coupling, and shape of the matrix. Allocates only to grow.
-  void TissueChanged(const Tissue& tissue, const std::vector<double>& free, int wanted_aggregates);
+  void Build(const Tissue& tissue, const std::vector<double>& free, int wanted_aggregates);
+
+  /// After a cut: the same aggregates with the new particles, and the matrix that was factored before. Add no more to
+  /// it.
+  void Extend(const Tissue& tissue, const std::vector<double>& free) { aggregates_.Extend(tissue, free); }
 
   void Clear() { factor_.Reset(first_unknown_); }
+
+  /// The points that have particles of aggregate a: points()[points_begin(a)] ... points()[points_begin(a + 1) - 1].
+  const std::vector<int>& points() const { return points_; }
+  int points_begin(int a) const { return points_begin_[a]; }
 
   /// The first aggregate that a is coupled to, <= a.
   int first_coupled(int a) const { return first_[a]; }
 
-  /// Adds the 3 x 3 block (row by row) between function c of a and function d of b, b <= a, first_coupled(a) <= b. Of the blocks on
-  /// the diagonal the part above it is ignored.
+  /// Adds the 3 x 3 block (row by row) between function c of a and function d of b, b <= a, first_coupled(a) <= b. Of
+  /// the blocks on the diagonal the part above it is ignored.
   void Add(int a, int c, int b, int d, const double* block);
 
   void Factor() { factor_.Factor(); }
@@ -36,8 +44,11 @@ class CoarseMatrix {
   void Solve(double* x) const { factor_.Solve(x); }
 
  private:
+  void ListPoints(const Tissue& tissue);
+
   Aggregates aggregates_;
   std::vector<int> first_, first_unknown_;
+  std::vector<int> points_, points_begin_;
   SkylineCholesky factor_;
 };
 

@@ -7,7 +7,8 @@ namespace {
 
 constexpr int kFunctions = CoarseMatrix::kFunctions;
 
-/// What an integration point sees of one aggregate's functions b_c: gradients, and what their fit by an affine field needs.
+/// What an integration point sees of one aggregate's functions b_c: gradients, and what their fit by an affine field
+/// needs.
 struct Share {
   int aggregate;
   double gradient[kFunctions][3];         // sum_k b_c(k) dphi_k/dX
@@ -17,8 +18,8 @@ struct Share {
   double square[kFunctions][kFunctions];  // sum_k b_c(k) b_d(k)
 };
 
-/// Gradient, row of the affine fit and rest offset of particle k of a point, whatever its shape. Fit and offset of a box
-/// are scaled to unit offsets: only their product counts.
+/// Gradient, row of the affine fit and rest offset of particle k of a point, whatever its shape. Fit and offset of a
+/// box are scaled to unit offsets: only their product counts.
 void PointRow(const PointGroup& group, int batch, int lane, int k, double* gradient, double* fit, double* offset) {
   const std::size_t b = batch;
   for (int i = 0; i < 3; ++i) {
@@ -41,17 +42,17 @@ void PointRow(const PointGroup& group, int batch, int lane, int k, double* gradi
 
 }  // namespace
 
-void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& arguments, int batch, int lane, double factor,
-                      CoarseMatrix& matrix) {
+void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& arguments, const PointPlace& place,
+                      double factor, int row, CoarseMatrix& matrix) {
   constexpr int kMost = 16;  // aggregates per point; particles of further ones are left to the fine level
   const PointGroup& group = *arguments.group;
   const Aggregates& aggregates = matrix.aggregates();
   Share shares[kMost];
   int count = 0;
   for (int k = 0; k < group.support; ++k) {
-    const int j = group.particle[(static_cast<std::size_t>(batch) * group.support + k) * kLanes + lane];
+    const int j = group.particle[(static_cast<std::size_t>(place.batch) * group.support + k) * kLanes + place.lane];
     const int a = aggregates.of_particle[j];
-    if (a < 0) continue;
+    if (a < 0 || a > row) continue;  // the matrix is symmetric
     int n = 0;
     while (n < count && shares[n].aggregate != a) ++n;
     if (n == kMost) continue;
@@ -60,7 +61,7 @@ void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& argume
       shares[n].aggregate = a;
     }
     double gradient[3], fit[3], offset[3];
-    PointRow(group, batch, lane, k, gradient, fit, offset);
+    PointRow(group, place.batch, place.lane, k, gradient, fit, offset);
     const double* b = &aggregates.basis[j].x;
     for (int c = 0; c < kFunctions; ++c) {
       shares[n].sum[c] += b[c];
@@ -73,13 +74,13 @@ void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& argume
     }
   }
 
-  const double stiffness = group.stabilisation[static_cast<std::size_t>(batch) * kLanes + lane];
+  const double stiffness = group.stabilisation[static_cast<std::size_t>(place.batch) * kLanes + place.lane];
   double blocks[kFunctions * kFunctions * 9];
   for (int m = 0; m < count; ++m) {
+    if (shares[m].aggregate != row) continue;
     for (int n = 0; n < count; ++n) {
       const Share &a = shares[m], &b = shares[n];
-      if (b.aggregate > a.aggregate) continue;
-      kernels.blocks(arguments, batch, lane, kFunctions, a.gradient[0], kFunctions, b.gradient[0], blocks);
+      kernels.blocks(arguments, place.batch, place.lane, kFunctions, a.gradient[0], kFunctions, b.gradient[0], blocks);
       for (int c = 0; c < kFunctions; ++c) {
         for (int d = 0; d < kFunctions; ++d) {
           double* block = blocks + (c * kFunctions + d) * 9;

@@ -6,9 +6,9 @@
 
 namespace meshless_cutting {
 
-/// Adds `factor` times the strain and the stabilisation energy's tangent of the point in `lane` of `batch`. `arguments` must name group and
-/// tangent.
-void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& arguments, int batch, int lane, double factor,
-                      CoarseMatrix& matrix);
+/// Adds `factor` times the tangent of the point's strain and stabilisation energy to the rows of aggregate `row`.
+/// `arguments` must name group and tangent.
+void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& arguments, const PointPlace& place,
+                      double factor, int row, CoarseMatrix& matrix);
 
 }  // namespace meshless_cutting

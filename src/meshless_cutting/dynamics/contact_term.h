@@ -37,7 +37,7 @@ class ContactTerm : public ForceTerm {
   void BeginStep(const StageMotion& motion) override;
   double Evaluate(const Field& y, Field& gradient) override;
   void Linearise(const Field& y) override;
-  void AddProduct(const Field& p, Field& q) override;
+  bool AddProduct(const Field& p, Field& q) override;
   void AddDiagonal(BlockField& blocks) override;
   void AddCoarse(CoarseMatrix& matrix) override;
   void EndStep(const Field& y) override;

@@ -61,9 +61,8 @@ struct Dynamics::Parts {
         pool(config.solver.threads),
         points(config.material, pool),
         elastic(points),
-        potential(terms, pool),
+        potential(elastic, terms, pool),
         newton(potential, config.solver.relative_tolerance, config.solver.newton_iterations) {
-    terms.push_back(&elastic);
     if (config.damping && config.damping->stiffness_s > 0) {
       terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points, elastic));
     }
@@ -109,6 +108,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   particles = tissue.particle_count();
   skin_changed = true;
   points.TissueChanged(tissue);
+  elastic.TissueChanged();
   for (ForceTerm* term : terms) term->TissueChanged(particles);
   fragments.Build(tissue);
   potential.Resize(particles);
@@ -228,6 +228,7 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
     if (best != &position) newton.Start(*best);
     stage = *best;
   }
+  newton.BeginStep(tissue);
   const NewtonSolver::Result solved = newton.Minimise(stage, load);
   result.newton_iterations += solved.newton_iterations;
   result.linear_iterations += solved.linear_iterations;

@@ -39,15 +39,20 @@ void ElasticPoints::Gather(int chunk, const Vector4* buffer, double factor, Vect
               to);
 }
 
-double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
+double ElasticPoints::EvaluateInSlots(const Field& x) {
   pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
     chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(Arguments(groups_.chunks[c], x, nullptr));
   });
+  double energy = 0;
+  for (double e : chunk_energy_) energy += e;
+  return energy;
+}
+
+double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
+  const double energy = EvaluateInSlots(x);
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
     Gather(c, slots_.data(), 1, &gradient[c * kParticlesPerChunk]);
   });
-  double energy = 0;
-  for (double e : chunk_energy_) energy += e;
   return energy;
 }
 
@@ -62,9 +67,14 @@ void ElasticPoints::Linearise(const Field& x, PointTangent& tangent) {
                 [&](int c) { kernels_[groups_.chunks[c].group].linearise(Arguments(groups_.chunks[c], x, &tangent)); });
 }
 
+void ElasticPoints::ProductInSlots(const PointTangent& tangent, const Field& p) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent));
+  });
+}
+
 void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q) {
-  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
-                [&](int c) { kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent)); });
+  ProductInSlots(tangent, p);
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
     Gather(c, slots_.data(), factor, &q[c * kParticlesPerChunk]);
   });
@@ -93,16 +103,14 @@ void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, Bloc
 
 void ElasticPoints::AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix) {
   static const Field kNone;
-  for (const PointChunk& chunk : groups_.chunks) {
-    const PointGroup& group = groups_.groups[chunk.group];
-    const KernelArguments arguments = Arguments(chunk, kNone, &tangent);
-    for (int batch = chunk.begin; batch < chunk.end; ++batch) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        if (group.point[static_cast<std::size_t>(batch) * kLanes + lane] < 0) continue;
-        AddCoarseOfPoint(kernels_[chunk.group], arguments, batch, lane, factor, matrix);
-      }
+  pool_.ForEach(matrix.aggregates().count(), [&](int a) {
+    for (int n = matrix.points_begin(a); n < matrix.points_begin(a + 1); ++n) {
+      const PointPlace& place = groups_.places[matrix.points()[n]];
+      PointChunk group_only{};
+      group_only.group = place.group;
+      AddCoarseOfPoint(kernels_[place.group], Arguments(group_only, kNone, &tangent), place, factor, a, matrix);
     }
-  }
+  });
 }
 
 }  // namespace meshless_cutting

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "dynamics/field_loops.h"
 #include "dynamics/force_term.h"
 #include "dynamics/point_groups.h"
 #include "dynamics/point_kernels.h"
@@ -22,6 +23,12 @@ class ElasticPoints {
   ElasticPoints(const MaterialConfig& material, ThreadPool& pool);
 
   void TissueChanged(const Tissue& tissue);
+
+  /// Strain energy and stabilisation, J; leaves the gradient, N, in the slots. The caller gathers.
+  double EvaluateInSlots(const Field& x);
+  /// Leaves tangent p in the slots.
+  void ProductInSlots(const PointTangent& tangent, const Field& p);
+  SlotSums slot_sums() const { return {slots_.data(), groups_.slot_begin.data(), groups_.slots.data()}; }
 
   /// Strain energy and stabilisation, J; adds its gradient, N.
   double Evaluate(const Field& x, Field& gradient);

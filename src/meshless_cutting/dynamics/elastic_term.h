@@ -1,25 +1,28 @@
-// Strain energy and stabilisation.
+// Strain energy and stabilisation in the potential of a step.
 #pragma once
 
 #include "dynamics/elastic_points.h"
-#include "dynamics/force_term.h"
 
 namespace meshless_cutting {
 
-class ElasticTerm : public ForceTerm {
+/// Every scene has it, so that the potential knows it by name and sums it up together with the inertia.
+class ElasticTerm {
  public:
   /// `points` must outlive this.
   explicit ElasticTerm(ElasticPoints& points) : points_(points) {}
 
   /// Newton's tangent is that of the energy times this: where damping in proportion to stiffness is part of the step.
   void SetTangentFactor(double factor) { factor_ = factor; }
+  double tangent_factor() const { return factor_; }
 
-  void TissueChanged(int) override { points_.Resize(tangent_); }
-  double Evaluate(const Field& y, Field& gradient) override { return points_.Evaluate(y, gradient); }
-  void Linearise(const Field& y) override { points_.Linearise(y, tangent_); }
-  void AddProduct(const Field& p, Field& q) override { points_.AddProduct(tangent_, factor_, p, q); }
-  void AddDiagonal(BlockField& blocks) override { points_.AddDiagonal(tangent_, factor_, blocks); }
-  void AddCoarse(CoarseMatrix& matrix) override { points_.AddCoarse(tangent_, factor_, matrix); }
+  void TissueChanged() { points_.Resize(tangent_); }
+  void Linearise(const Field& y) { points_.Linearise(y, tangent_); }
+  /// Energy, J, and tangent times p without the factor: sums for the particles are left in the slots.
+  double EvaluateInSlots(const Field& y) { return points_.EvaluateInSlots(y); }
+  void ProductInSlots(const Field& p) { points_.ProductInSlots(tangent_, p); }
+  SlotSums slot_sums() const { return points_.slot_sums(); }
+  void AddDiagonal(BlockField& blocks) { points_.AddDiagonal(tangent_, factor_, blocks); }
+  void AddCoarse(CoarseMatrix& matrix) { points_.AddCoarse(tangent_, factor_, matrix); }
 
  private:
   ElasticPoints& points_;

@@ -13,11 +13,37 @@ MESHLESS_CUTTING_CLONES void GatherSlots(const ParticleRange& range, const Vecto
   }
 }
 
-MESHLESS_CUTTING_CLONES void Scale(const ParticleRange& range, const double* weight, const Vector4* p, Vector4* q) {
-  for (int j = range.begin; j < range.end; ++j) q[j] = weight[j] * p[j];
+MESHLESS_CUTTING_CLONES double GatherProduct(const ParticleRange& range, const SlotSums& sums, double factor,
+                                             const double* free, const double* inertia, const Vector4* p, Vector4* q) {
+  Vector4 dot;
+  for (int j = range.begin; j < range.end; ++j) {
+    Vector4 sum;
+    for (int n = sums.slot_begin[j]; n < sums.slot_begin[j + 1]; ++n) sum += sums.buffer[sums.slots[n]];
+    q[j] = free[j] * (inertia[j] * p[j] + factor * sum);
+    dot += Multiply(p[j], q[j]);
+  }
+  return Sum(dot);
 }
 
-MESHLESS_CUTTING_CLONES double MaskAndDot(const ParticleRange& range, const double* mask, const Vector4* p, Vector4* q) {
+MESHLESS_CUTTING_CLONES GradientSums GatherGradient(const ParticleRange& range, const SlotSums& sums,
+                                                    const double* free, const double* inertia, const Vector4* y,
+                                                    const Vector4* target, Vector4* gradient) {
+  Vector4 inertia_sum, residual, terms;
+  for (int j = range.begin; j < range.end; ++j) {
+    Vector4 sum;
+    for (int n = sums.slot_begin[j]; n < sums.slot_begin[j + 1]; ++n) sum += sums.buffer[sums.slots[n]];
+    const Vector4 way = y[j] - target[j], term = free[j] * (gradient[j] + sum);
+    const Vector4 pull = (free[j] * inertia[j]) * way, total = term + pull;
+    gradient[j] = total;
+    inertia_sum += Multiply(pull, way);
+    residual += Multiply(total, total);
+    terms += Multiply(term, term);
+  }
+  return {Sum(inertia_sum), Sum(residual), Sum(terms)};
+}
+
+MESHLESS_CUTTING_CLONES double MaskAndDot(const ParticleRange& range, const double* mask, const Vector4* p,
+                                          Vector4* q) {
   Vector4 sum;
   for (int j = range.begin; j < range.end; ++j) {
     q[j] = mask[j] * q[j];
@@ -66,15 +92,16 @@ MESHLESS_CUTTING_CLONES double ScaleAndProlong(const ParticleRange& range, const
                                                const Vector4* r, Vector4* z) {
   Vector4 sum;
   for (int j = range.begin; j < range.end; ++j) {
-    if (aggregate[j] < 0) {
-      z[j] = Vector4();
-      continue;
-    }
     const SymmetricBlock& a = inverse[j];
     const Vector4 &v = r[j], &b = basis[j];
+    const Vector4 local =
+        (v.x * Vector4{a.xx, a.xy, a.xz, 0} + v.y * Vector4{a.xy, a.yy, a.yz, 0}) + v.z * Vector4{a.xz, a.yz, a.zz, 0};
+    if (aggregate[j] < 0) {
+      z[j] = local;
+      sum += Multiply(v, local);
+      continue;
+    }
     const double* u = coarse + CoarseMatrix::kUnknowns * aggregate[j];
-    const Vector4 local = (v.x * Vector4{a.xx, a.xy, a.xz, 0} + v.y * Vector4{a.xy, a.yy, a.yz, 0}) +
-                          v.z * Vector4{a.xz, a.yz, a.zz, 0};
     const Vector4 affine = (b.x * Vector4{u[0], u[1], u[2], 0} + b.y * Vector4{u[3], u[4], u[5], 0}) +
                            (b.z * Vector4{u[6], u[7], u[8], 0} + b.w * Vector4{u[9], u[10], u[11], 0});
     z[j] = local + affine;

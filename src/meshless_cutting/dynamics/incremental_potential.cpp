@@ -20,45 +20,49 @@ void IncrementalPotential::Resize(int particles) {
   inertia.resize(particles);
   free.resize(particles);
   target.resize(particles);
-  for (std::vector<double>& sums : chunk_sums_) sums.resize(ChunkCount(particles, kParticlesPerChunk));
+  chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
+  gradient_sums_.resize(chunk_sums_.size());
 }
 
 double IncrementalPotential::Evaluate(const Field& y, Field& gradient, Norms& norms) {
   std::fill(gradient.begin(), gradient.end(), Vector4());
   double energy = 0;
   for (ForceTerm* term : terms_) energy += term->Evaluate(y, gradient);
+  energy += elastic_.EvaluateInSlots(y);
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-    double sums[3] = {};
-    const int end = std::min(size(), (c + 1) * kParticlesPerChunk);
-    for (int j = c * kParticlesPerChunk; j < end; ++j) {
-      const Vector4 way = y[j] - target[j];
-      const Vector4 term = free[j] * gradient[j];
-      const Vector4 total = term + (free[j] * inertia[j]) * way;
-      gradient[j] = total;
-      sums[0] += free[j] * inertia[j] * Dot(way, way);
-      sums[1] += Dot(total, total);
-      sums[2] += Dot(term, term);
-    }
-    for (int i = 0; i < 3; ++i) chunk_sums_[i][c] = sums[i];
+    gradient_sums_[c] = GatherGradient(ParticleRange(c, size()), elastic_.slot_sums(), free.data(), inertia.data(),
+                                       y.data(), target.data(), gradient.data());
   });
-  norms.residual = std::sqrt(SumOf(chunk_sums_[1]));
-  norms.terms = std::sqrt(SumOf(chunk_sums_[2]));
-  return energy + 0.5 * SumOf(chunk_sums_[0]);
+  GradientSums sum;
+  for (const GradientSums& s : gradient_sums_) {
+    sum.inertia += s.inertia;
+    sum.residual += s.residual;
+    sum.terms += s.terms;
+  }
+  norms.residual = std::sqrt(sum.residual);
+  norms.terms = std::sqrt(sum.terms);
+  return energy + 0.5 * sum.inertia;
 }
 
 void IncrementalPotential::Linearise(const Field& y) {
+  elastic_.Linearise(y);
   for (ForceTerm* term : terms_) term->Linearise(y);
 }
 
 double IncrementalPotential::Product(const Field& p, Field& q) {
+  elastic_.ProductInSlots(p);
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-    Scale(ParticleRange(c, size()), inertia.data(), p.data(), q.data());
+    chunk_sums_[c] = GatherProduct(ParticleRange(c, size()), elastic_.slot_sums(), elastic_.tangent_factor(),
+                                   free.data(), inertia.data(), p.data(), q.data());
   });
-  for (ForceTerm* term : terms_) term->AddProduct(p, q);
-  pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-    chunk_sums_[0][c] = MaskAndDot(ParticleRange(c, size()), free.data(), p.data(), q.data());
-  });
-  return SumOf(chunk_sums_[0]);
+  bool is_changed = false;
+  for (ForceTerm* term : terms_) is_changed |= term->AddProduct(p, q);
+  if (is_changed) {
+    pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
+      chunk_sums_[c] = MaskAndDot(ParticleRange(c, size()), free.data(), p.data(), q.data());
+    });
+  }
+  return SumOf(chunk_sums_);
 }
 
 void IncrementalPotential::Diagonal(BlockField& blocks) {
@@ -69,6 +73,7 @@ void IncrementalPotential::Diagonal(BlockField& blocks) {
       blocks[j].xx = blocks[j].yy = blocks[j].zz = inertia[j];
     }
   });
+  elastic_.AddDiagonal(blocks);
   for (ForceTerm* term : terms_) term->AddDiagonal(blocks);
 }
 
@@ -91,6 +96,7 @@ void IncrementalPotential::Coarse(CoarseMatrix& matrix) {
       }
     }
   }
+  elastic_.AddCoarse(matrix);
   for (ForceTerm* term : terms_) term->AddCoarse(matrix);
 }
 

@@ -4,17 +4,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "dynamics/elastic_term.h"
 #include "dynamics/force_term.h"
 #include "dynamics/thread_pool.h"
 
 namespace meshless_cutting {
 
-/// E(y) = sum_j inertia_j / 2 |y_j - target_j|^2 + sum of terms. Particles that are not free stay where they are: their rows
-/// of gradients and products are zero.
+/// E(y) = sum_j inertia_j / 2 |y_j - target_j|^2 + elastic energy + sum of terms. Particles that are not free stay
+/// where they are: their rows of gradients and products are zero.
 class IncrementalPotential {
  public:
-  /// `pool` and `terms` must outlive this.
-  IncrementalPotential(const std::vector<ForceTerm*>& terms, ThreadPool& pool) : terms_(terms), pool_(pool) {}
+  /// All must outlive this. `terms`: what a scene has besides elasticity.
+  IncrementalPotential(ElasticTerm& elastic, const std::vector<ForceTerm*>& terms, ThreadPool& pool)
+      : elastic_(elastic), terms_(terms), pool_(pool) {}
 
   void Resize(int particles);
 
@@ -22,7 +24,7 @@ class IncrementalPotential {
   std::vector<double> free;     // 1: moves, 0: does not
   Field target;                 // m
 
-  /// Norms of the gradient and of the terms' share in it, over the free particles; N.
+  /// Norms of the gradient and of the forces' share in it (all but inertia), over the free particles; N.
   struct Norms {
     double residual = 0, terms = 0;
   };
@@ -46,9 +48,11 @@ class IncrementalPotential {
   ThreadPool& pool() { return pool_; }
 
  private:
+  ElasticTerm& elastic_;
   const std::vector<ForceTerm*>& terms_;
   ThreadPool& pool_;
-  std::vector<double> chunk_sums_[3];
+  std::vector<double> chunk_sums_;
+  std::vector<GradientSums> gradient_sums_;
 };
 
 }  // namespace meshless_cutting

@@ -48,15 +48,22 @@ typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
          ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
 }
 
+#if defined(MESHLESS_CUTTING_LANES_AVX512)
+[[gnu::always_inline]] inline __m512d Pair(const Vector4& low, const Vector4& high) {
+  return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(&low.x)), _mm256_load_pd(&high.x), 1);
+}
+[[gnu::always_inline]] inline void AddPair(const __m512d& two, Vector4& low, Vector4& high) {
+  _mm256_store_pd(&low.x, _mm256_add_pd(_mm256_load_pd(&low.x), _mm512_castpd512_pd256(two)));
+  _mm256_store_pd(&high.x, _mm256_add_pd(_mm256_load_pd(&high.x), _mm512_extractf64x4_pd(two, 1)));
+}
+#endif
+
 /// The vectors of eight particles, one to a lane.
 [[gnu::always_inline]] inline void LoadParticles(const Vector4* field, const int* particle, Lanes* v) {
 #if defined(MESHLESS_CUTTING_LANES_AVX512)
   // Lanes n and n + 4 share a register until they are transposed: xyz_ xyz_ -> x, y, z.
-  const auto pair = [&](int n) {
-    const __m512d low = _mm512_castpd256_pd512(_mm256_load_pd(&field[particle[n]].x));
-    return _mm512_insertf64x4(low, _mm256_load_pd(&field[particle[n + 4]].x), 1);
-  };
-  const __m512d a = pair(0), b = pair(1), c = pair(2), d = pair(3);
+  const __m512d a = Pair(field[particle[0]], field[particle[4]]), b = Pair(field[particle[1]], field[particle[5]]);
+  const __m512d c = Pair(field[particle[2]], field[particle[6]]), d = Pair(field[particle[3]], field[particle[7]]);
   const __m512d xz_ab = _mm512_unpacklo_pd(a, b), y_ab = _mm512_unpackhi_pd(a, b);
   const __m512d xz_cd = _mm512_unpacklo_pd(c, d), y_cd = _mm512_unpackhi_pd(c, d);
   const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
@@ -82,16 +89,10 @@ typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
   const __m512d z_even = _mm512_unpacklo_pd(z, zero), z_odd = _mm512_unpackhi_pd(z, zero);
   const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
   const __m512i high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
-  const auto add = [&](const __m512d& two, int first, int second) {
-    double* a = &to[slot[first]].x;
-    _mm256_store_pd(a, _mm256_add_pd(_mm256_load_pd(a), _mm512_castpd512_pd256(two)));
-    double* b = &to[slot[second]].x;
-    _mm256_store_pd(b, _mm256_add_pd(_mm256_load_pd(b), _mm512_extractf64x4_pd(two, 1)));
-  };
-  add(_mm512_permutex2var_pd(xy_even, low, z_even), 0, 2);
-  add(_mm512_permutex2var_pd(xy_odd, low, z_odd), 1, 3);
-  add(_mm512_permutex2var_pd(xy_even, high, z_even), 4, 6);
-  add(_mm512_permutex2var_pd(xy_odd, high, z_odd), 5, 7);
+  AddPair(_mm512_permutex2var_pd(xy_even, low, z_even), to[slot[0]], to[slot[2]]);
+  AddPair(_mm512_permutex2var_pd(xy_odd, low, z_odd), to[slot[1]], to[slot[3]]);
+  AddPair(_mm512_permutex2var_pd(xy_even, high, z_even), to[slot[4]], to[slot[6]]);
+  AddPair(_mm512_permutex2var_pd(xy_odd, high, z_odd), to[slot[5]], to[slot[7]]);
 #else
   // In the order of the above: where two slots coincide, the order of the sum matters to the last bit.
   for (int l : {0, 2, 1, 3, 4, 6, 5, 7}) to[slot[l]] += Vector4{v[0][l], v[1][l], v[2][l], 0};

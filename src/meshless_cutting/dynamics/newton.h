@@ -16,6 +16,9 @@ class NewtonSolver {
 
   void TissueChanged(const Tissue& tissue);
 
+  /// Before the first Minimise of a step.
+  void BeginStep(const Tissue& tissue) { preconditioner_.BeginStep(tissue, potential_); }
+
   /// Differences of energies that mean nothing, J.
   void SetEnergyRounding(double rounding) { energy_rounding_ = rounding; }
 

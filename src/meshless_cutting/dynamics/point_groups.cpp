@@ -68,18 +68,14 @@ void Resize(PointGroup& group) {
   }
 }
 
-/// Where the n-th of `count` points of a group goes. Along the space-filling curve a chunk is filled lane by lane, not batch by batch: the
-/// points of one batch lie apart, share no particles, and do not wait for each other's sums.
-struct Place {
-  Place(int n, int count) {
-    constexpr int kPointsPerChunk = kBatchesPerChunk * kLanes;
-    const int chunk = n / kPointsPerChunk, in_chunk = std::min(kPointsPerChunk, count - chunk * kPointsPerChunk);
-    const int batches = (in_chunk + kLanes - 1) / kLanes;
-    lane = n % kPointsPerChunk / batches;
-    batch = chunk * kBatchesPerChunk + n % kPointsPerChunk % batches;
-  }
-  int batch, lane;
-};
+/// Where the n-th of `count` points of a group goes. Along the space-filling curve a chunk is filled lane by lane, not
+/// batch by batch: the points of one batch lie apart, share no particles, and do not wait for each other's sums.
+PointPlace PlaceOf(int group, int n, int count) {
+  constexpr int kPointsPerChunk = kBatchesPerChunk * kLanes;
+  const int chunk = n / kPointsPerChunk, in_chunk = std::min(kPointsPerChunk, count - chunk * kPointsPerChunk);
+  const int batches = (in_chunk + kLanes - 1) / kLanes;
+  return {group, chunk * kBatchesPerChunk + n % kPointsPerChunk % batches, n % kPointsPerChunk / batches};
+}
 
 /// Copies the numbers that describe a point from lane 0 of a batch, which is never empty, to lanes without a point: any valid
 /// numbers will do.
@@ -105,7 +101,7 @@ void FillEmptyLanes(PointGroup& group) {
 }
 
 /// Writes point p to its place.
-void Put(const Tissue& tissue, int p, const PointSupport& support, double stabilisation, const Place& place,
+void Put(const Tissue& tissue, int p, const PointSupport& support, double stabilisation, const PointPlace& place,
          PointGroup& group) {
   const int K = group.support, lane = place.lane;
   const std::size_t batch = place.batch;
@@ -153,6 +149,7 @@ void PointGroups::Build(const Tissue& tissue, double shear_modulus) {
   SortNewPoints(tissue);
   int counts[kSupportShapes] = {};
   supports_.resize(tissue.point_count());
+  places.resize(tissue.point_count());
   for (int p = 0; p < tissue.point_count(); ++p) {
     supports_[p] = DescribeSupport(tissue, p);
     ++counts[static_cast<int>(supports_[p].shape)];
@@ -169,7 +166,8 @@ void PointGroups::Build(const Tissue& tissue, double shear_modulus) {
     const int shape = static_cast<int>(support.shape);
     const double scale = tissue.support_size * support.h2;
     const double stabilisation = scale > 0 ? kStabilisation * shear_modulus * tissue.point_volume[p] / scale : 0;
-    Put(tissue, p, support, stabilisation, Place(next[shape]++, counts[shape]), groups[shape]);
+    places[p] = PlaceOf(shape, next[shape]++, counts[shape]);
+    Put(tissue, p, support, stabilisation, places[p], groups[shape]);
   }
   for (PointGroup& group : groups) FillEmptyLanes(group);
   BuildSlots(tissue.particle_count());
@@ -177,23 +175,42 @@ void PointGroups::Build(const Tissue& tissue, double shear_modulus) {
 
 void PointGroups::BuildSlots(int particles) {
   chunks.clear();
+  for (int g = 0; g < kSupportShapes; ++g) {
+    for (int begin = 0; begin < groups[g].batches; begin += kBatchesPerChunk) {
+      chunks.push_back({g, begin, std::min(begin + kBatchesPerChunk, groups[g].batches), 0, 0});
+    }
+  }
+  // In the order of their particles, so that the threads' stretches of points and of particles lie at the same place.
+  const auto mean_particle = [&](const PointChunk& chunk) {
+    const std::vector<int>& particle = groups[chunk.group].particle;
+    const std::size_t stride = static_cast<std::size_t>(groups[chunk.group].support) * kLanes;
+    double sum = 0;
+    for (std::size_t at = chunk.begin * stride; at < chunk.end * stride; ++at) sum += particle[at];
+    return sum / static_cast<double>((chunk.end - chunk.begin) * stride);
+  };
+  chunk_order_.clear();
+  for (const PointChunk& chunk : chunks) chunk_order_.emplace_back(mean_particle(chunk), chunk);
+  std::sort(chunk_order_.begin(), chunk_order_.end(), [](const auto& x, const auto& y) {
+    if (x.first != y.first) return x.first < y.first;
+    return x.second.group != y.second.group ? x.second.group < y.second.group : x.second.begin < y.second.begin;
+  });
+
   slot_particle_.clear();
   slot_of_.assign(particles, -1);
-  for (int g = 0; g < kSupportShapes; ++g) {
-    PointGroup& group = groups[g];
-    for (int begin = 0; begin < group.batches; begin += kBatchesPerChunk) {
-      const int end = std::min(begin + kBatchesPerChunk, group.batches), first = static_cast<int>(slot_particle_.size());
-      const std::size_t stride = static_cast<std::size_t>(group.support) * kLanes;
-      for (std::size_t at = begin * stride; at < end * stride; ++at) {
-        const int j = group.particle[at];
-        if (slot_of_[j] < first) {
-          slot_of_[j] = static_cast<int>(slot_particle_.size());
-          slot_particle_.push_back(j);
-        }
-        group.slot[at] = slot_of_[j];
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    PointChunk& chunk = chunks[c] = chunk_order_[c].second;
+    PointGroup& group = groups[chunk.group];
+    chunk.first_slot = static_cast<int>(slot_particle_.size());
+    const std::size_t stride = static_cast<std::size_t>(group.support) * kLanes;
+    for (std::size_t at = chunk.begin * stride; at < chunk.end * stride; ++at) {
+      const int j = group.particle[at];
+      if (slot_of_[j] < chunk.first_slot) {
+        slot_of_[j] = static_cast<int>(slot_particle_.size());
+        slot_particle_.push_back(j);
       }
-      chunks.push_back({g, begin, end, first, static_cast<int>(slot_particle_.size())});
+      group.slot[at] = slot_of_[j];
     }
+    chunk.last_slot = static_cast<int>(slot_particle_.size());
   }
   slot_count = static_cast<int>(slot_particle_.size());
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "dynamics/field.h"
@@ -42,10 +43,16 @@ struct PointChunk {
   int first_slot, last_slot;
 };
 
+/// Where a point is.
+struct PointPlace {
+  int group, batch, lane;
+};
+
 /// All points, neighbours close to each other, and the way of their sums to the particles: a loop over chunks leaves a
 /// Vector4 in every slot, a loop over particles gathers them. The order of all sums is fixed here.
 struct PointGroups {
   PointGroup groups[kSupportShapes];
+  std::vector<PointPlace> places;  // per point of the tissue
   std::vector<PointChunk> chunks;
   int slot_count = 0;  // size of a buffer of slots
 
@@ -66,6 +73,7 @@ struct PointGroups {
   std::vector<int> order_;               // points along a space-filling curve
   std::vector<std::uint64_t> curve_;     // place of each point on it
   std::vector<int> slot_of_, slot_particle_;
+  std::vector<std::pair<double, PointChunk>> chunk_order_;
 };
 
 }  // namespace meshless_cutting

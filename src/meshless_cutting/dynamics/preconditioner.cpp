@@ -11,8 +11,13 @@ namespace {
 constexpr int kAggregates = 40;
 constexpr int kParticlesPerAggregate = 24;
 
-/// The coarse matrix is made again when a solve takes so many times the iterations that it took when the matrix was new.
-constexpr double kAgeing = 1.5;
+/// The coarse matrix is made again when a solve takes kAgeing times the iterations that it took when the matrix was
+/// new, and it has served for so many solves that making it has paid, or when a solve takes kUseless times as many.
+constexpr double kAgeing = 1.5, kUseless = 4;
+constexpr int kLeastSolves = 8;
+
+/// Aggregates from before a cut are made again after so many solves in any case.
+constexpr int kMostSolves = 60;
 
 SymmetricBlock Inverse(const SymmetricBlock& b) {
   SymmetricBlock inverse;
@@ -36,11 +41,25 @@ SymmetricBlock Inverse(const SymmetricBlock& b) {
 }  // namespace
 
 void Preconditioner::TissueChanged(const Tissue& tissue, const IncrementalPotential& potential) {
-  const int particles = tissue.particle_count();
+  const std::size_t particles = tissue.particle_count(), known = inverse_.size();
   inverse_.resize(particles);
-  chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
-  coarse_.TissueChanged(tissue, potential.free, std::min(kAggregates, particles / kParticlesPerAggregate));
+  chunk_sums_.resize(ChunkCount(tissue.particle_count(), kParticlesPerChunk));
+  if (known == 0 || particles < known) {
+    BuildCoarse(tissue, potential);
+    return;
+  }
+  coarse_.Extend(tissue, potential.free);
+  tissue_changed_ = true;
+}
+
+void Preconditioner::BeginStep(const Tissue& tissue, const IncrementalPotential& potential) {
+  if (tissue_changed_ && (coarse_is_stale_ || solves_ >= kMostSolves)) BuildCoarse(tissue, potential);
+}
+
+void Preconditioner::BuildCoarse(const Tissue& tissue, const IncrementalPotential& potential) {
+  coarse_.Build(tissue, potential.free, std::min(kAggregates, tissue.particle_count() / kParticlesPerAggregate));
   coarse_vector_.resize(coarse_.size());
+  tissue_changed_ = false;
   coarse_is_stale_ = true;
 }
 
@@ -49,19 +68,23 @@ void Preconditioner::RefreshCoarse(IncrementalPotential& potential) {
   coarse_.Factor();
   coarse_is_stale_ = false;
   coarse_is_new_ = true;
+  solves_ = 0;
 }
 
 void Preconditioner::ReportIterations(double per_decade) {
+  ++solves_;
   if (coarse_is_new_) {
     iterations_when_new_ = per_decade;
     coarse_is_new_ = false;
-  } else if (per_decade > kAgeing * iterations_when_new_ + 1) {
+  } else if ((solves_ >= kLeastSolves && per_decade > kAgeing * iterations_when_new_ + 1) ||
+             per_decade > kUseless * iterations_when_new_ + 1) {
     coarse_is_stale_ = true;
   }
 }
 
 void Preconditioner::Refresh(IncrementalPotential& potential) {
-  if (coarse_is_stale_) RefreshCoarse(potential);
+  // Since a cut the matrix has a shape that the points no longer fit: it serves until the next step.
+  if (coarse_is_stale_ && !tissue_changed_) RefreshCoarse(potential);
   potential.Diagonal(inverse_);
   potential.pool().ForEach(ChunkCount(potential.size(), kParticlesPerChunk), [&](int c) {
     const ParticleRange range(c, potential.size());

@@ -1,4 +1,5 @@
-// An approximate inverse of the tangent: the 3 x 3 blocks of its diagonal, plus a coarse correction (additive two-level method).
+// An approximate inverse of the tangent: the 3 x 3 blocks of its diagonal, plus a coarse correction (additive two-level
+// method).
 #pragma once
 
 #include "dynamics/coarse_matrix.h"
@@ -6,11 +7,16 @@
 
 namespace meshless_cutting {
 
-/// B = D^-1 + Z A^-1 Z^T with A = Z^T H Z for an H that may be some steps old: B stays symmetric positive definite
-/// whatever A was made of, and a new A is made when the iterations show that the old one has aged.
+/// B = D^-1 + Z A^-1 Z^T with A = Z^T H Z for an H that may be some steps old, and a Z that may be some cuts old: B
+/// stays symmetric positive definite whatever A and Z were made of. Both are made again when the iterations show that
+/// they have aged, but not in every frame of a cut; and some time after the last cut in any case, so that each fragment
+/// gets the rigid motions of its own. What decides is counts of iterations, the same on any machine.
 class Preconditioner {
  public:
   void TissueChanged(const Tissue& tissue, const IncrementalPotential& potential);
+
+  /// Before the solves of a step: new aggregates if it is time for them.
+  void BeginStep(const Tissue& tissue, const IncrementalPotential& potential);
 
   /// Takes the tangent that `potential` was linearised at last.
   void Refresh(IncrementalPotential& potential);
@@ -22,11 +28,14 @@ class Preconditioner {
   void ReportIterations(double per_decade);
 
  private:
+  void BuildCoarse(const Tissue& tissue, const IncrementalPotential& potential);
   void RefreshCoarse(IncrementalPotential& potential);
 
   BlockField inverse_;
   CoarseMatrix coarse_;
   bool coarse_is_stale_ = true, coarse_is_new_ = false;
+  bool tissue_changed_ = false;  // since the aggregates were made
+  int solves_ = 0;               // since the coarse matrix was made
   double iterations_when_new_ = 0;
   std::vector<double> coarse_vector_;
   std::vector<double> chunk_sums_;

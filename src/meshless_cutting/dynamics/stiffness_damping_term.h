@@ -20,7 +20,7 @@ class StiffnessDampingTerm : public ForceTerm {
   void BeginStep(const StageMotion& motion) override;
   double Evaluate(const Field& y, Field& gradient) override;
   void Linearise(const Field&) override {}
-  void AddProduct(const Field&, Field&) override {}
+  bool AddProduct(const Field&, Field&) override { return false; }
   void AddDiagonal(BlockField&) override {}
   void AddCoarse(CoarseMatrix&) override {}
 

@@ -1,88 +1,94 @@
 #include "dynamics/thread_pool.h"
 
+#include <algorithm>
+
+#include "dynamics/futex.h"
+
 namespace meshless_cutting {
 namespace {
 
-constexpr int kIndexBits = 24;
-constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
-
-// About 20 us: longer than the serial stretches inside a solve, far shorter than the pause between two frames.
-constexpr int kSpins = 400;
+// About 100 us: longer than the serial stretches inside a solve, far shorter than the pause between two frames.
+constexpr int kSpins = 2000;
 
 void Pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
-#else
-  std::this_thread::yield();
 #endif
 }
 
+constexpr std::uint64_t StretchOf(std::uint64_t next, std::uint64_t end) { return end << 32 | next; }
+
 }  // namespace
 
-ThreadPool::ThreadPool(int threads) {
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Work(); });
+ThreadPool::ThreadPool(int threads) : thread_count_(std::max(threads, 1)) {
+  if (thread_count_ == 1) return;
+  stretches_ = std::make_unique<Stretch[]>(thread_count_);
+  for (int i = 1; i < thread_count_; ++i) workers_.emplace_back([this, i] { Work(i); });
 }
 
 ThreadPool::~ThreadPool() {
-  {
-    std::lock_guard<std::mutex> lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_all();
+  stop_ = true;
+  ++loop_;
+  FutexWakeAll(loop_);
   for (std::thread& worker : workers_) worker.join();
 }
 
 void ThreadPool::Run(Function function, const void* context, int count) {
+  // Stretches are empty and no task runs: nobody reads these now.
   function_ = function;
   context_ = context;
-  done_.store(0, std::memory_order_relaxed);
-  const std::uint64_t loop = (ticket_.load(std::memory_order_relaxed) >> (2 * kIndexBits)) + 1;
-  ticket_.store(loop << (2 * kIndexBits) | static_cast<std::uint64_t>(count) << kIndexBits);
-  if (sleepers_.load() > 0) {
-    std::lock_guard<std::mutex> lock(mutex_);
-    wake_.notify_all();
+  undone_.store(count);
+  const std::uint64_t threads = thread_count_, tasks = count;
+  for (std::uint64_t t = 0; t < threads; ++t) {
+    stretches_[t].left.store(StretchOf(tasks * t / threads, tasks * (t + 1) / threads), std::memory_order_release);
   }
-  while (ClaimAndRun()) {
+  ++loop_;
+  if (sleepers_.load() > 0) FutexWakeAll(loop_);
+
+  const std::uint32_t done = TakeAll(0);
+  std::uint32_t undone = undone_.fetch_sub(done) - done;
+  for (int spins = 0; undone > 0 && spins < kSpins; ++spins) {
+    Pause();
+    undone = undone_.load(std::memory_order_acquire);
   }
-  for (int spins = 0; done_.load(std::memory_order_acquire) < count; ++spins) {
-    if (spins < kSpins) {
-      Pause();
-    } else {
-      std::this_thread::yield();
-    }
-  }
+  if (undone == 0) return;
+  caller_sleeps_ = true;
+  while ((undone = undone_.load()) > 0) FutexWait(undone_, undone);
+  caller_sleeps_ = false;
 }
 
-bool ThreadPool::ClaimAndRun() {
-  std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-  for (;;) {
-    const std::uint64_t next = ticket & kIndexMask, count = ticket >> kIndexBits & kIndexMask;
-    if (next >= count) return false;
-    if (ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_acquire)) {
-      // The loop cannot end, nor its function change, before this index is counted as done.
-      function_(context_, static_cast<int>(next));
-      done_.fetch_add(1, std::memory_order_release);
-      return true;
+/// Runs what it can get, its own first; how many that were.
+int ThreadPool::TakeAll(int thread) {
+  int done = 0;
+  for (int turn = 0; turn < thread_count_; ++turn) {
+    Stretch& stretch = stretches_[(thread + turn) % thread_count_];
+    std::uint64_t left = stretch.left.load(std::memory_order_acquire);
+    for (;;) {
+      const std::uint64_t next = left & 0xffffffffU, end = left >> 32;
+      if (next >= end) break;
+      const std::uint64_t rest = turn == 0 ? StretchOf(next + 1, end) : StretchOf(next, end - 1);
+      if (!stretch.left.compare_exchange_weak(left, rest, std::memory_order_acq_rel, std::memory_order_acquire))
+        continue;
+      // The loop cannot end, nor its function change, before this task is counted.
+      function_(context_, static_cast<int>(turn == 0 ? next : end - 1));
+      ++done;
+      left = stretch.left.load(std::memory_order_acquire);
     }
   }
+  return done;
 }
 
-void ThreadPool::Work() {
+void ThreadPool::Work(int thread) {
   for (;;) {
-    const std::uint64_t seen = ticket_.load() >> (2 * kIndexBits);
-    while (ClaimAndRun()) {
-    }
-    bool changed = false;
-    for (int spins = 0; spins < kSpins && !changed && !stop_; ++spins) {
-      Pause();
-      changed = ticket_.load(std::memory_order_relaxed) >> (2 * kIndexBits) != seen;
-    }
-    if (changed) continue;
-    std::unique_lock<std::mutex> lock(mutex_);
-    ++sleepers_;
-    wake_.wait(lock, [&] { return stop_ || ticket_.load() >> (2 * kIndexBits) != seen; });
-    --sleepers_;
+    const std::uint32_t seen = loop_.load();
     if (stop_) return;
+    const std::uint32_t done = TakeAll(thread);
+    if (done > 0 && undone_.fetch_sub(done) == done && caller_sleeps_) FutexWakeAll(undone_);
+    for (int spins = 0; spins < kSpins && loop_.load(std::memory_order_relaxed) == seen; ++spins) Pause();
+    if (loop_.load() != seen) continue;
+    ++sleepers_;
+    FutexWait(loop_, seen);
+    --sleepers_;
   }
 }
 
