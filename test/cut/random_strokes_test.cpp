@@ -30,8 +30,8 @@ std::vector<int> ExhaustiveSearch(const SoftBody& body, const BladeMotion& blade
     const int link = static_cast<int>(l);
     if (body.graph().IsCut(link)) continue;
     const auto& [a, b] = body.lattice().links[l];
-    const Eigen::Vector3d a0 = body.motion().Start(a), a1 = body.motion().End(a);
-    const Eigen::Vector3d b0 = body.motion().Start(b), b1 = body.motion().End(b);
+    const auto [a0, a1] = body.motion().At(a);
+    const auto [b0, b1] = body.motion().At(b);
     bool crossed = false;
     for (const BladeWindow& w : blade)
       for (size_t e = 0; e + 1 < w.points_t0.size() && !crossed; ++e) {

@@ -1,102 +1,188 @@
 #include "crossing/find_crossings.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "crossing/edge_edge.h"
 
 namespace meshless_cutting {
 namespace {
 
-/// Six bits, one per side of the box [min, max] that the point lies beyond (Cohen-Sutherland). Things whose codes share
-/// a bit have a face of the box between them and it.
-std::uint8_t Outcode(const Eigen::Vector3d& x, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  return static_cast<std::uint8_t>((x[0] < min[0]) | (x[0] > max[0]) << 1 | (x[1] < min[1]) << 2 |
-                                   (x[1] > max[1]) << 3 | (x[2] < min[2]) << 4 | (x[2] > max[2]) << 5);
+constexpr std::uint8_t kBeyondAll = 63;
+
+/// Six bits, one per side of the box [min, max] that all of [low, high] lies beyond (Cohen-Sutherland).
+template <typename Box>
+std::uint8_t Outcode(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Box& box) {
+  return static_cast<std::uint8_t>((high[0] < box.min[0]) | (low[0] > box.max[0]) << 1 | (high[1] < box.min[1]) << 2 |
+                                   (low[1] > box.max[1]) << 3 | (high[2] < box.min[2]) << 4 |
+                                   (low[2] > box.max[2]) << 5);
 }
+
+/// Bounds of particles at both ends of the window, widened by `overshoot` times their extent.
+template <typename Box>
+Box BoundParticles(const int* particles, int count, double overshoot, const LatticeMotion& object) {
+  const Eigen::Vector3d *x0 = object.particles_t0().data(), *x1 = object.particles_t1().data();
+  // Eigen's three-vectors are not packed; two halves of four lanes would be, at the price of another copy.
+  double low[3], high[3];
+  for (int axis = 0; axis < 3; ++axis) low[axis] = high[axis] = x0[particles[0]][axis];
+  for (int k = 0; k < count; ++k) {
+    const double *a = x0[particles[k]].data(), *b = x1[particles[k]].data();
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], std::min(a[axis], b[axis]));
+      high[axis] = std::max(high[axis], std::max(a[axis], b[axis]));
+    }
+  }
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double margin = overshoot * (high[axis] - low[axis]);
+    box.min[axis] = low[axis] - margin;
+    box.max[axis] = high[axis] + margin;
+  }
+  return box;
+}
+
+/// Something apart from the box matters for its links to something else on another side. Links between it and what
+/// lies in the box are found from there.
+bool IsNear(std::uint8_t code, const std::vector<int>& neighbours, const std::vector<std::uint8_t>& codes) {
+  if (code == 0) return true;
+  for (int n : neighbours)
+    if (codes[n] != 0 && (code & codes[n]) == 0) return true;
+  return false;
+}
+
+/// (1 - t) x0 + t x1 gives x0 and x1 themselves at the ends, so windows meet in the same bits.
+Eigen::Vector3d At(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double t) { return (1 - t) * x0 + t * x1; }
 
 }  // namespace
 
 CrossingFinder::CrossingFinder(const Lattice& lattice, const MaterialGraph& graph)
-    : lattice_(&lattice), graph_(&graph), stamp_(lattice.vertices.size(), 0), motion_(lattice.vertices.size()) {}
+    : lattice_(&lattice), graph_(&graph), vertices_(lattice.vertices.size()) {}
 
-const std::pair<Eigen::Vector3d, Eigen::Vector3d>& CrossingFinder::Motion(int vertex, const LatticeMotion& object) {
-  if (stamp_[vertex] != search_) {
-    stamp_[vertex] = search_;
-    motion_[vertex] = {object.Start(vertex), object.End(vertex)};
-  }
-  return motion_[vertex];
-}
-
-void CrossingFinder::FindNearBlocks(const Aabb& box, const LatticeMotion& object) {
-  auto encode = [&](const std::vector<Eigen::Vector3d>& x0, const std::vector<Eigen::Vector3d>& x1,
-                    std::vector<std::uint8_t>& codes) {
-    codes.resize(x1.size());
-    for (size_t i = 0; i < x1.size(); ++i)
-      codes[i] = Outcode(x0[i], box.min, box.max) & Outcode(x1[i], box.min, box.max);
+CrossingFinder::Bounds CrossingFinder::BoundBlade(const BladeMotion& blade) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Bounds nothing = {Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
+  auto add = [](Bounds& bounds, const Bounds& other) {
+    bounds.min = bounds.min.cwiseMin(other.min);
+    bounds.max = bounds.max.cwiseMax(other.max);
   };
-  encode(object.particles_t0(), object.particles_t1(), particle_code_);
-  encode(object.surface_t0(), object.surface_t1(), surface_code_);
-  // A block lies beyond a side when the particles that bound it and its loose vertices do.
-  const int count = object.block_count();
-  block_code_.assign(count, 63);
-  near_.assign(count, 0);
-  near_blocks_.clear();
-  for (int b = 0; b < count; ++b) {
-    std::uint8_t code = 63;
-    const int* particles = object.block_particles(b);
-    for (int k = 0; k < object.support_size(); ++k) code &= particle_code_[particles[k]];
-    for (int v : object.block_loose(b)) {
-      if (code == 0) break;
-      if (const int s = object.SurfaceVertex(v); s >= 0) {
-        code &= surface_code_[s];
-      } else {
-        const auto& [start, end] = Motion(v, object);
-        code &= Outcode(start, box.min, box.max) & Outcode(end, box.min, box.max);
-      }
-    }
-    block_code_[b] = code;
-  }
-  // A link can reach the box when no side has both its ends beyond.
-  for (int b = 0; b < count; ++b) {
-    bool near = block_code_[b] == 0;
-    for (int q : object.block_neighbours(b)) near = near || (block_code_[b] & block_code_[q]) == 0;
-    if (!near) continue;
-    near_[b] = 1;
-    near_blocks_.push_back(b);
-  }
-}
-
-void CrossingFinder::TestLink(int link, const BladeMotion& blade, const Aabb& box, const LatticeMotion& object) {
-  const auto& [a, b] = lattice_->links[link];
-  const auto [a0, a1] = Motion(a, object);
-  const auto [b0, b1] = Motion(b, object);
-  if (Outcode(a0, box.min, box.max) & Outcode(a1, box.min, box.max) & Outcode(b0, box.min, box.max) &
-      Outcode(b1, box.min, box.max))
-    return;
-  // (1 - t) x0 + t x1 gives x0 and x1 themselves at the ends, so windows meet in the same bits.
-  auto at = [](const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double t) -> Eigen::Vector3d {
-    return (1 - t) * x0 + t * x1;
-  };
+  Bounds all = nothing;
+  window_bounds_.clear();
+  edge_bounds_.clear();
   for (const BladeWindow& window : blade) {
-    const MovingSegment object_edge = {at(a0, a1, window.t0), at(b0, b1, window.t0), at(a0, a1, window.t1),
-                                       at(b0, b1, window.t1)};
+    Bounds whole = nothing;
+    for (size_t e = 0; e + 1 < window.points_t0.size(); ++e) {
+      Bounds edge = {window.points_t0[e], window.points_t0[e]};
+      for (const Eigen::Vector3d* p : {&window.points_t0[e + 1], &window.points_t1[e], &window.points_t1[e + 1]})
+        add(edge, {*p, *p});
+      edge_bounds_.push_back(edge);
+      add(whole, edge);
+    }
+    window_bounds_.push_back(whole);
+    add(all, whole);
+  }
+  return all;
+}
+
+void CrossingFinder::FindNearGroups(const Bounds& box, const LatticeMotion& object) {
+  const auto& groups = object.blocks().groups();
+  const auto& blocks = object.blocks().blocks();
+  group_bounds_.resize(groups.size());
+  group_code_.assign(groups.size(), kBeyondAll);
+  near_groups_.clear();
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const MotionGroup& group = groups[g];
+    if (group.blocks.empty()) continue;
+    GroupBounds& kept = group_bounds_[g];
+    auto encode = [&] {
+      const double margin = (1 + 2 * group.overshoot) * (object.travel() - kept.travel);
+      return Outcode(kept.bounds.min.array() - margin, kept.bounds.max.array() + margin, box);
+    };
+    std::uint8_t code = kept.version == group.version ? encode() : 0;
+    if (code == 0 && !(kept.version == group.version && kept.travel == object.travel())) {
+      kept = {BoundParticles<Bounds>(group.particles.data(), static_cast<int>(group.particles.size()), group.overshoot,
+                                     object),
+              object.travel(), group.version};
+      code = encode();
+    }
+    group_code_[g] = code;
+  }
+  for (int b : object.blocks().with_astray())
+    for (int v : blocks[b].astray) {
+      const Eigen::Vector3d x = object.At(v).start;
+      group_code_[blocks[b].group] &= Outcode(x, x, box);
+    }
+  for (size_t g = 0; g < groups.size(); ++g)
+    if (!groups[g].blocks.empty() && IsNear(group_code_[g], groups[g].neighbours, group_code_))
+      near_groups_.push_back(static_cast<int>(g));
+}
+
+void CrossingFinder::FindNearBlocks(const Bounds& box, const LatticeMotion& object) {
+  const auto& blocks = object.blocks().blocks();
+  const auto& groups = object.blocks().groups();
+  block_code_.resize(blocks.size());
+  for (size_t b = 0; b < blocks.size(); ++b) block_code_[b] = blocks[b].group < 0 ? kBeyondAll : group_code_[blocks[b].group];
+  for (int g : near_groups_)
+    for (int b : groups[g].blocks) {
+      const Bounds bounds =
+          BoundParticles<Bounds>(object.block_particles(b), object.support_size(), blocks[b].overshoot, object);
+      std::uint8_t code = Outcode(bounds.min, bounds.max, box);
+      for (int v : blocks[b].astray) {
+        const Eigen::Vector3d x = object.At(v).start;
+        code &= Outcode(x, x, box);
+      }
+      block_code_[b] = code;
+    }
+  block_near_.assign(blocks.size(), 0);
+  near_blocks_.clear();
+  for (int g : near_groups_)
+    for (int b : groups[g].blocks)
+      if (IsNear(block_code_[b], blocks[b].neighbours, block_code_)) {
+        block_near_[b] = 1;
+        near_blocks_.push_back(b);
+      }
+}
+
+const CrossingFinder::MovingVertex& CrossingFinder::Place(int vertex, const Bounds& box, const LatticeMotion& object) {
+  MovingVertex& moving = vertices_[vertex];
+  if (moving.search != search_) {
+    moving.search = search_;
+    moving.window = object.At(vertex);
+    const auto& [start, end] = moving.window;
+    moving.code = Outcode(start.cwiseMin(end), start.cwiseMax(end), box);
+  }
+  return moving;
+}
+
+void CrossingFinder::TestLink(int link, const BladeMotion& blade) {
+  const LatticeMotion::Window &a = vertices_[lattice_->links[link][0]].window,
+                              &b = vertices_[lattice_->links[link][1]].window;
+  const Eigen::Vector3d low = a.start.cwiseMin(a.end).cwiseMin(b.start).cwiseMin(b.end);
+  const Eigen::Vector3d high = a.start.cwiseMax(a.end).cwiseMax(b.start).cwiseMax(b.end);
+  const Bounds* edge_bounds = edge_bounds_.data();
+  for (size_t w = 0; w < blade.size(); ++w) {
+    const BladeWindow& window = blade[w];
+    const size_t edges = window.points_t0.size() - 1;
+    const Bounds* bounds = std::exchange(edge_bounds, edge_bounds + edges);
+    if (Outcode(low, high, window_bounds_[w]) != 0) continue;
+    const MovingSegment object_edge = {At(a.start, a.end, window.t0), At(b.start, b.end, window.t0),
+                                       At(a.start, a.end, window.t1), At(b.start, b.end, window.t1)};
     Crossing first;
     bool hit = false;
-    double along = 0;
-    for (size_t e = 0; e + 1 < window.points_t0.size(); ++e) {
+    for (size_t e = 0; e < edges; ++e) {
+      if (Outcode(low, high, bounds[e]) != 0) continue;
       const MovingSegment blade_edge = {window.points_t0[e], window.points_t0[e + 1], window.points_t1[e],
                                         window.points_t1[e + 1]};
-      const double length = (blade_edge.q_t1 - blade_edge.p_t1).norm();
-      if (const auto crossing = FindFirstCrossing(blade_edge, object_edge)) {
-        const double t = window.t0 + crossing->t * (window.t1 - window.t0);
-        if (!hit || t < first.t) {
-          hit = true;
-          const Eigen::Vector3d p = at(object_edge.p_t0, object_edge.p_t1, crossing->t);
-          const Eigen::Vector3d q = at(object_edge.q_t0, object_edge.q_t1, crossing->t);
-          first = {{link, crossing->v}, t, along + crossing->u * length, at(p, q, crossing->v)};
-        }
-      }
-      along += length;
+      const auto crossing = FindFirstCrossing(blade_edge, object_edge);
+      if (!crossing) continue;
+      const double t = window.t0 + crossing->t * (window.t1 - window.t0);
+      if (hit && first.t <= t) continue;
+      hit = true;
+      double along = crossing->u * (blade_edge.q_t1 - blade_edge.p_t1).norm();
+      for (size_t i = 0; i < e; ++i) along += (window.points_t1[i + 1] - window.points_t1[i]).norm();
+      const Eigen::Vector3d p = At(object_edge.p_t0, object_edge.p_t1, crossing->t);
+      const Eigen::Vector3d q = At(object_edge.q_t0, object_edge.q_t1, crossing->t);
+      first = {{link, crossing->v}, t, along, At(p, q, crossing->v)};
     }
     if (hit) {
       found_.push_back(first);
@@ -109,27 +195,25 @@ const std::vector<Crossing>& CrossingFinder::Find(const BladeMotion& blade, cons
   found_.clear();
   if (blade.empty()) return found_;
   ++search_;
-  Aabb box = {blade[0].points_t0[0], blade[0].points_t0[0]};
-  for (const BladeWindow& window : blade)
-    for (const auto* points : {&window.points_t0, &window.points_t1})
-      for (const Eigen::Vector3d& p : *points) {
-        box.min = box.min.cwiseMin(p);
-        box.max = box.max.cwiseMax(p);
-      }
+  Bounds box = BoundBlade(blade);
   // Vertices may leave the bounds of their particles by rounding and by their offset.
   const double slack = object.slack() + 1e-12 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
   box.min.array() -= slack;
   box.max.array() += slack;
+  FindNearGroups(box, object);
   FindNearBlocks(box, object);
+  const MotionBlocks& blocks = object.blocks();
   for (int block : near_blocks_)
-    for (int a : object.block_vertices(block))
+    for (int a : blocks.blocks()[block].vertices) {
+      const std::uint8_t code = Place(a, box, object).code;
       for (const int* l = lattice_->vertex_links.begin(a); l != lattice_->vertex_links.end(a); ++l) {
-        if (graph_->IsCut(*l)) continue;
         const auto& ends = lattice_->links[*l];
-        const int b = ends[0] == a ? ends[1] : ends[0];
-        if (near_[object.block(b)] && b < a) continue;  // its turn comes from the other end
-        TestLink(*l, blade, box, object);
+        const int b = ends[0] == a ? ends[1] : ends[0], other = blocks.block_of(b);
+        if (block_near_[other] && b < a) continue;  // its turn comes from the other end
+        if ((code & block_code_[other]) == 0 && !graph_->IsCut(*l) && (code & Place(b, box, object).code) == 0)
+          TestLink(*l, blade);
       }
+    }
   std::sort(found_.begin(), found_.end(), [](const Crossing& p, const Crossing& q) { return p.cut.link < q.cut.link; });
   return found_;
 }

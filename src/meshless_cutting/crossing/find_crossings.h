@@ -18,7 +18,10 @@ struct Crossing {
   Eigen::Vector3d point;  // scene frame, m
 };
 
-/// Searches uncut links near the blade. All buffers are kept between frames.
+/// Searches uncut links near the blade, from the coarse to the fine: groups of blocks, blocks of vertices, vertices,
+/// links. Each gets an outcode, six bits that say beyond which sides of the blade's box all of it stays during the
+/// window; what joins two of them can reach the box only where their codes have no bit in common. Bounds of a group
+/// serve, widened by what particles can have moved since, until the blade is near. Buffers are kept between frames.
 class CrossingFinder {
  public:
   CrossingFinder(const Lattice& lattice, const MaterialGraph& graph);
@@ -28,20 +31,33 @@ class CrossingFinder {
   const std::vector<Crossing>& Find(const BladeMotion& blade, const LatticeMotion& object);
 
  private:
-  struct Aabb {
+  struct Bounds {
     Eigen::Vector3d min, max;
   };
-  void FindNearBlocks(const Aabb& box, const LatticeMotion& object);
-  void TestLink(int link, const BladeMotion& blade, const Aabb& box, const LatticeMotion& object);
-  const std::pair<Eigen::Vector3d, Eigen::Vector3d>& Motion(int vertex, const LatticeMotion& object);
+  struct MovingVertex {
+    LatticeMotion::Window window;
+    std::uint32_t search = 0;  // that it was evaluated in
+    std::uint8_t code = 0;
+  };
+  Bounds BoundBlade(const BladeMotion& blade);
+  struct GroupBounds {
+    Bounds bounds;
+    double travel = 0;          // of the object when they were made
+    std::uint32_t version = 0;  // of the group
+  };
+  void FindNearGroups(const Bounds& box, const LatticeMotion& object);
+  void FindNearBlocks(const Bounds& box, const LatticeMotion& object);
+  const MovingVertex& Place(int vertex, const Bounds& box, const LatticeMotion& object);
+  void TestLink(int link, const BladeMotion& blade);
 
   const Lattice* lattice_;
   const MaterialGraph* graph_;
   std::vector<Crossing> found_;
-  std::vector<std::uint8_t> particle_code_, surface_code_, block_code_, near_;
-  std::vector<int> near_blocks_;
-  std::vector<std::uint32_t> stamp_;  // per vertex: search in which its motion was evaluated
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion_;
+  std::vector<Bounds> window_bounds_, edge_bounds_;  // of the blade: each window, each edge in each window, in order
+  std::vector<GroupBounds> group_bounds_;
+  std::vector<std::uint8_t> group_code_, block_code_, block_near_;
+  std::vector<int> near_groups_, near_blocks_;
+  std::vector<MovingVertex> vertices_;
   std::uint32_t search_ = 0;
 };
 

@@ -1,6 +1,8 @@
 #include "crossing/lattice_motion.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 
 namespace meshless_cutting {
 
@@ -25,49 +27,35 @@ Eigen::Vector3d Scatter(int index) {
 
 }  // namespace
 
-LatticeMotion::LatticeMotion(const Lattice& lattice, const CutSurface& surface, const IntegrationPoints& points,
-                             const ShapeFunctions& shape, const Tissue& tissue)
-    : lattice_(&lattice), surface_(&surface), tissue_(&tissue), mapping_(points, shape, tissue) {
+LatticeMotion::LatticeMotion(const Lattice& lattice, const CutSurface& surface, const VertexMapping& drawn,
+                             const IntegrationPoints& points, const BackgroundGrid& grid, const ShapeFunctions& shape,
+                             const Tissue& tissue)
+    : surface_(&surface),
+      drawn_(&drawn),
+      points_(&points),
+      tissue_(&tissue),
+      inner_(points, shape, tissue),
+      blocks_(lattice, grid) {
   const auto& [a, b] = lattice.links[0];
   offset_size_ = kOffsetShare * (lattice.vertices[a] - lattice.vertices[b]).norm();
   const int count = static_cast<int>(lattice.vertices.size());
   for (int v = 0; v < count; ++v) {
     offset_.push_back(offset_size_ * Scatter(v));
-    mapping_.Add(lattice.vertices[v], v);
-    mapping_.MapInside(v);
-    Enter(v);
+    inner_.Add(lattice.vertices[v], v);
+    if (surface.VertexOf(v) < 0) inner_.MapInside(v);
+    Place(v);
   }
-  for (int v = 0; v < count; ++v) Link(v);
+  for (int v = 0; v < count; ++v) blocks_.Connect(v);
+  std::vector<int> all(points.points().size());
+  std::iota(all.begin(), all.end(), 0);
+  blocks_.Regroup(all, tissue);
 }
 
-void LatticeMotion::Enter(int vertex) {
-  const size_t block = static_cast<size_t>(mapping_.point(vertex));
-  if (block >= block_vertices_.size())
-    for (auto* lists : {&block_vertices_, &block_loose_, &block_neighbours_}) lists->resize(block + 1);
-  block_vertices_[block].push_back(vertex);
-  if (surface_->VertexOf(vertex) >= 0 || !mapping_.convex(vertex)) block_loose_[block].push_back(vertex);
-}
-
-void LatticeMotion::Leave(int vertex) {
-  for (auto* list : {&block_vertices_[mapping_.point(vertex)], &block_loose_[mapping_.point(vertex)]}) {
-    const auto at = std::find(list->begin(), list->end(), vertex);
-    if (at != list->end()) list->erase(at);
-  }
-}
-
-void LatticeMotion::Link(int vertex) {
-  const int p = mapping_.point(vertex);
-  auto insert = [](std::vector<int>& values, int value) {
-    const auto at = std::lower_bound(values.begin(), values.end(), value);
-    if (at == values.end() || *at != value) values.insert(at, value);
-  };
-  for (const int* l = lattice_->vertex_links.begin(vertex); l != lattice_->vertex_links.end(vertex); ++l) {
-    const auto& [a, b] = lattice_->links[*l];
-    const int q = mapping_.point(a == vertex ? b : a);
-    if (p == q) continue;
-    insert(block_neighbours_[p], q);
-    insert(block_neighbours_[q], p);
-  }
+void LatticeMotion::Place(int vertex) {
+  const int s = surface_->VertexOf(vertex);
+  const int point = s >= 0 ? drawn_->point(s) : inner_.point(vertex);
+  const double overshoot = s >= 0 ? drawn_->overshoot(s) : inner_.overshoot(vertex);
+  blocks_.Assign(vertex, point, points_->points()[point].cell, overshoot);
 }
 
 void LatticeMotion::SetWindow(const std::vector<Eigen::Vector3d>* particles_t0,
@@ -78,45 +66,60 @@ void LatticeMotion::SetWindow(const std::vector<Eigen::Vector3d>* particles_t0,
   particles_t1_ = particles_t1;
   surface_t0_ = surface_t0;
   surface_t1_ = surface_t1;
+  Eigen::Array3d farthest = Eigen::Array3d::Zero();
+  for (size_t j = 0; j < particles_t1->size(); ++j)
+    farthest = farthest.max(((*particles_t1)[j] - (*particles_t0)[j]).array().abs());
+  travel_ += farthest.maxCoeff();
 }
 
 void LatticeMotion::KeepStarts(const std::vector<int>& points, const std::vector<Eigen::Vector3d>& particles) {
   lost_.clear();
+  const int block_count = static_cast<int>(blocks_.blocks().size());
   for (int p : points)
-    if (p < block_count())
-      for (int v : block_vertices_[p])
-        if (!mapping_.IsJoined(v)) lost_.push_back(v);
+    if (p < block_count)
+      for (int v : blocks_.blocks()[p].vertices)
+        if (surface_->VertexOf(v) < 0 && !inner_.IsJoined(v)) lost_.push_back(v);
   std::sort(lost_.begin(), lost_.end());
-  for (int v : lost_)
-    if (surface_->VertexOf(v) < 0) kept_.emplace_back(v, mapping_.Position(v, particles));
+  for (int v : lost_) kept_.emplace_back(v, inner_.Position(v, particles));
 }
 
-void LatticeMotion::Remap(const std::vector<int>& points) {
+void LatticeMotion::Remap(const std::vector<int>& points, const std::vector<int>& redrawn) {
+  std::vector<int> moved;
   for (int v : lost_) {
-    Leave(v);
-    mapping_.MapInside(v);
-    Enter(v);
+    inner_.MapInside(v);
+    moved.push_back(v);
   }
-  for (int v : lost_) Link(v);
+  for (int s : redrawn)
+    if (const int v = drawn_->anchor(s); surface_->VertexOf(v) == s) moved.push_back(v);
+  for (int v : moved) Place(v);
+  for (int v : moved) blocks_.MarkAstray(v);
+  for (int v : moved) blocks_.Connect(v);
+  const int block_count = static_cast<int>(blocks_.blocks().size());
   for (int p : points)
-    if (p < block_count())
-      for (int v : block_vertices_[p]) mapping_.Refresh(v);
+    if (p < block_count)
+      for (int v : blocks_.blocks()[p].vertices)
+        if (surface_->VertexOf(v) < 0) inner_.Refresh(v);
+  blocks_.Regroup(points, *tissue_);
 }
 
-void LatticeMotion::ForgetStarts() { kept_.clear(); }
-
-Eigen::Vector3d LatticeMotion::Start(int vertex) const {
-  const int s = surface_->VertexOf(vertex);
-  if (s >= 0) return (*surface_t0_)[s] + offset_[vertex];
-  const auto kept =
-      std::lower_bound(kept_.begin(), kept_.end(), vertex, [](const auto& entry, int v) { return entry.first < v; });
-  if (kept != kept_.end() && kept->first == vertex) return kept->second + offset_[vertex];
-  return mapping_.Position(vertex, *particles_t0_) + offset_[vertex];
+void LatticeMotion::ForgetStarts() {
+  kept_.clear();
+  blocks_.ForgetAstray();
 }
 
-Eigen::Vector3d LatticeMotion::End(int vertex) const {
-  const int s = surface_->VertexOf(vertex);
-  return (s >= 0 ? (*surface_t1_)[s] : mapping_.Position(vertex, *particles_t1_)) + offset_[vertex];
+LatticeMotion::Window LatticeMotion::At(int vertex) const {
+  const Eigen::Vector3d& offset = offset_[vertex];
+  if (const int s = surface_->VertexOf(vertex); s >= 0) return {(*surface_t0_)[s] + offset, (*surface_t1_)[s] + offset};
+  Window window;
+  inner_.Positions(vertex, *particles_t0_, *particles_t1_, window.start, window.end);
+  if (!kept_.empty()) {
+    const auto kept =
+        std::lower_bound(kept_.begin(), kept_.end(), vertex, [](const auto& entry, int v) { return entry.first < v; });
+    if (kept != kept_.end() && kept->first == vertex) window.start = kept->second;
+  }
+  window.start += offset;
+  window.end += offset;
+  return window;
 }
 
 }  // namespace meshless_cutting

@@ -33,9 +33,14 @@ CutSurface::CutSurface(const Lattice& lattice, const MaterialGraph& graph)
   for (size_t face = 0; face < lattice.faces.size(); ++face) {
     if (lattice.face_tetrahedra[face][1] >= 0) continue;
     skin_slot_[face] = static_cast<int>(skin_.size());
-    skin_.emplace_back();
-    DrawSkin(static_cast<int>(face));
+    Triangle triangle;
+    for (int i = 0; i < 3; ++i) {
+      const int v = lattice.faces[face][i];
+      triangle[i] = static_cast<std::uint32_t>(Resolve({{Kind::kVertex, v, -1}, v}));
+    }
+    skin_.push_back(triangle);
   }
+  torn_slot_.assign(skin_.size(), -1);
 }
 
 bool CutSurface::Joined(int tetrahedron, int a, int b) const {
@@ -165,7 +170,12 @@ void CutSurface::DrawSkin(int face) {
   const int slot = face_slot_[face];
   FaceTriangles(*lattice_, *graph_, face, lattice_->faces[face], lattice_->face_links[face],
                 slot < 0 ? std::array<bool, 3>{} : faces_[slot].has_middle, corners);
-  std::vector<Triangle>& triangles = skin_[skin_slot_[face]];
+  int& torn = torn_slot_[skin_slot_[face]];
+  if (torn < 0) {
+    torn = static_cast<int>(torn_.size());
+    torn_.emplace_back();
+  }
+  std::vector<Triangle>& triangles = torn_[torn];
   triangles.clear();
   for (const CornerTriangle& c : corners)
     triangles.push_back({static_cast<std::uint32_t>(Resolve(c[0])), static_cast<std::uint32_t>(Resolve(c[1])),
@@ -227,7 +237,9 @@ void CutSurface::Update(const std::vector<int>& links) {
 
   for (int face : faces) UpdateFace(face);
   for (int face : faces)
-    if (skin_slot_[face] >= 0) DrawSkin(face);
+    if (const auto& l = lattice_->face_links[face];
+        skin_slot_[face] >= 0 && (graph_->IsCut(l[0]) || graph_->IsCut(l[1]) || graph_->IsCut(l[2])))
+      DrawSkin(face);
   for (int t : tetrahedra)
     if (DrawCaps(t)) changed_.push_back(t);
   SortUnique(changed_);
@@ -236,8 +248,12 @@ void CutSurface::Update(const std::vector<int>& links) {
 void CutSurface::WriteTriangles(Surface& surface) const {
   surface.triangles.clear();
   surface.region.clear();
-  for (const auto& triangles : skin_)
-    surface.triangles.insert(surface.triangles.end(), triangles.begin(), triangles.end());
+  for (size_t i = 0; i < skin_.size(); ++i) {
+    if (torn_slot_[i] < 0)
+      surface.triangles.push_back(skin_[i]);
+    else
+      surface.triangles.insert(surface.triangles.end(), torn_[torn_slot_[i]].begin(), torn_[torn_slot_[i]].end());
+  }
   surface.region.resize(surface.triangles.size(), SurfaceRegion::kSkin);
   for (const CapSlot& cap : caps_)
     surface.triangles.insert(surface.triangles.end(), cap.triangles.begin(), cap.triangles.end());

@@ -80,7 +80,9 @@ class CutSurface {
   std::vector<std::uint8_t> link_split_;               // per link
   std::vector<int> face_slot_, skin_slot_, cap_slot_;  // per face, face, tetrahedron: index below or -1
   std::vector<FaceSlot> faces_;
-  std::vector<std::vector<Triangle>> skin_;  // per skin face, in the order of the lattice's faces
+  std::vector<Triangle> skin_;               // per skin face, in the order of the lattice's faces, while it is whole
+  std::vector<int> torn_slot_;               // per skin face: index below or -1
+  std::vector<std::vector<Triangle>> torn_;  // triangles of the skin faces that have a cut link
   std::vector<CapSlot> caps_;
   std::vector<int> changed_;
   double cut_area_ = 0;

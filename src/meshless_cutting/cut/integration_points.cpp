@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace meshless_cutting {
 namespace {
@@ -29,7 +30,8 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
       grid_(&grid),
       cells_(grid.cell_count()),
       vertex_points_(lattice.vertices.size()),
-      root_(lattice.vertices.size(), -1) {
+      root_(lattice.vertices.size(), -1),
+      is_clipped_(lattice.tetrahedra.size(), 0) {
   const double sliver = kSliverShare * grid.spacing().prod();
   std::vector<CellVolume> parts;
   tetrahedron_cells_.offsets.push_back(0);
@@ -129,14 +131,20 @@ void IntegrationPoints::Relink(const std::vector<int>& points) {
     for (int q : neighbours_[p]) EraseSorted(neighbours_[q], p);
     neighbours_[p].clear();
   }
+  seen_by_.resize(points_.size(), -1);
   for (int p : points) {
     std::vector<int> neighbours;
+    seen_by_[p] = p;
     for (int v : points_[p].vertices)
-      neighbours.insert(neighbours.end(), vertex_points_[v].begin(), vertex_points_[v].end());
-    SortUnique(neighbours);
-    EraseSorted(neighbours, p);
+      for (int q : vertex_points_[v])
+        if (std::exchange(seen_by_[q], p) != p) neighbours.push_back(q);
+    std::sort(neighbours.begin(), neighbours.end());
     for (int q : neighbours) InsertSorted(neighbours_[q], p);
     neighbours_[p] = std::move(neighbours);
+  }
+  for (int p : points) {
+    seen_by_[p] = -1;
+    for (int q : neighbours_[p]) seen_by_[q] = -1;
   }
 }
 
@@ -186,16 +194,16 @@ const std::vector<int>& IntegrationPoints::Update(const CutSurface& surface, con
   std::vector<int> cells;
   for (int t : tetrahedra) cells.insert(cells.end(), tetrahedron_cells_.begin(t), tetrahedron_cells_.end(t));
   SortUnique(cells);
+  for (int t : tetrahedra) is_clipped_[t] = 1;
   for (int cell : cells) {
     std::vector<Chip>& chips = cells_[cell].chips;
-    chips.erase(std::remove_if(chips.begin(), chips.end(),
-                               [&](const Chip& chip) {
-                                 return std::binary_search(tetrahedra.begin(), tetrahedra.end(), chip.tetrahedron);
-                               }),
-                chips.end());
+    chips.erase(
+        std::remove_if(chips.begin(), chips.end(), [&](const Chip& chip) { return is_clipped_[chip.tetrahedron]; }),
+        chips.end());
   }
   std::array<std::vector<CellVolume>, 4> parts;
   for (int t : tetrahedra) {
+    is_clipped_[t] = 0;
     ClipPieces(surface, t, parts);
     const TetrahedronPieces& pieces = PiecesOf(graph_->CutMask(t));
     for (int i = 0; i < 4; ++i)  // the first vertex of each piece is its anchor

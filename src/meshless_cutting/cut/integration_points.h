@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "cut/cell_volumes.h"
@@ -66,7 +67,10 @@ class IntegrationPoints {
   std::vector<std::vector<int>> vertex_points_;
   std::vector<std::vector<int>> neighbours_;
   std::vector<int> changed_;
-  std::vector<int> root_;  // scratch of Regroup: per lattice vertex, -1 between calls
+  // Scratch that is the same between calls.
+  std::vector<int> root_;                 // of Regroup: per lattice vertex, -1
+  std::vector<int> seen_by_;              // of Relink: per point, -1
+  std::vector<std::uint8_t> is_clipped_;  // of Update: per tetrahedron, 0
 };
 
 }  // namespace meshless_cutting

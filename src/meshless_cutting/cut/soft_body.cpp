@@ -17,32 +17,27 @@ BackgroundGrid FitGrid(const Lattice& lattice, const ObjectConfig& config) {
   return BackgroundGrid(low, high, config.cell_size_m, ShapeFunctions::Margin(config.support_radius_cells));
 }
 
-/// Surroundings of the marked vertices of a surface: outward normals at rest (not unit) and the vertices they share
-/// triangles with.
+/// Surroundings of some vertices of a surface: outward normals at rest (not unit) and the vertices they share triangles
+/// with.
 struct Surroundings {
-  std::vector<int> slot;  // per vertex: index below, -1 where not marked
   std::vector<Eigen::Vector3d> normal;
   std::vector<std::vector<int>> neighbours;
 };
 
-Surroundings FindSurroundings(const Surface& surface, const std::vector<std::uint8_t>& marked) {
+/// `slot`: for each vertex its place in the result, -1 for vertices that are not asked for.
+Surroundings FindSurroundings(const Surface& surface, const std::vector<int>& slot, size_t count) {
   Surroundings around;
-  around.slot.assign(marked.size(), -1);
-  int count = 0;
-  for (size_t v = 0; v < marked.size(); ++v)
-    if (marked[v]) around.slot[v] = count++;
   around.normal.assign(count, Eigen::Vector3d::Zero());
   around.neighbours.resize(count);
   for (const auto& t : surface.triangles) {
-    if (!(marked[t[0]] | marked[t[1]] | marked[t[2]])) continue;
+    if ((slot[t[0]] & slot[t[1]] & slot[t[2]]) == -1) continue;
     const Eigen::Vector3d& a = surface.rest_positions[t[0]];
     const Eigen::Vector3d n = (surface.rest_positions[t[1]] - a).cross(surface.rest_positions[t[2]] - a);
     for (int i = 0; i < 3; ++i) {
-      const int slot = around.slot[t[i]];
-      if (slot < 0) continue;
-      around.normal[slot] += n;
-      around.neighbours[slot].push_back(static_cast<int>(t[(i + 1) % 3]));
-      around.neighbours[slot].push_back(static_cast<int>(t[(i + 2) % 3]));
+      const int s = slot[t[i]];
+      if (s < 0) continue;
+      around.normal[s] += n;
+      around.neighbours[s].push_back(static_cast<int>(t[(i + 1) % 3]));  // each once: the surface is closed
     }
   }
   return around;
@@ -64,8 +59,8 @@ SoftBody::SoftBody(const Lattice& lattice, const ObjectConfig& config, bool can_
   state_.acceleration = state_.velocity;
   cut_surface_.WriteTriangles(surface_);
   MapSurface({}, {}, 0, {});
-  if (can_be_cut) motion_.emplace(lattice, cut_surface_, points_, shape_, tissue_);
-  EndAdvance();    // positions of the surface as mapped,
+  EndAdvance();  // positions of the surface as mapped,
+  if (can_be_cut) motion_.emplace(lattice, cut_surface_, mapping_, points_, grid_, shape_, tissue_);
   BeginAdvance();  // where the first window starts
   EndAdvance();
 }
@@ -83,42 +78,45 @@ void SoftBody::Cut(const std::vector<LinkCut>& cuts) {
   const std::vector<int>& relinked = twins_.Update(changed, tissue_, source);
   for (int from : source)
     for (auto* values : {&state_.position, &state_.velocity, &state_.acceleration}) values->push_back((*values)[from]);
-  motion_->Remap(relinked);
 
   cut_surface_.WriteTriangles(surface_);
-  MapSurface(changed, relinked, first_new_vertex, cuts);
+  const std::vector<int> redrawn = MapSurface(changed, relinked, first_new_vertex, cuts);
+  motion_->Remap(relinked, redrawn);
 }
 
 // Who is mapped anew (section 2.3): new vertices, the ends of cut links, and vertices on points that changed.
-void SoftBody::MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points,
-                          int first_new_vertex, const std::vector<LinkCut>& cuts) {
+std::vector<int> SoftBody::MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points,
+                                      int first_new_vertex, const std::vector<LinkCut>& cuts) {
   const auto& vertices = cut_surface_.vertices();
   const int count = static_cast<int>(vertices.size());
-  std::vector<std::uint8_t> affected(vertices.size(), 0);
+  std::vector<int> affected;
   for (int v = first_new_vertex; v < count; ++v) {
     mapping_.Add(vertices[v].rest, vertices[v].anchor);
     surface_.rest_positions.push_back(vertices[v].rest);
     surface_.positions.emplace_back();
-    affected[v] = 1;
+    affected.push_back(v);
   }
-  std::vector<std::uint8_t> is_changed(points_.points().size(), 0), is_relinked(points_.points().size(), 0);
-  for (int p : changed_points) is_changed[p] = 1;
-  for (int p : relinked_points) is_relinked[p] = 1;
-  for (int v = 0; v < first_new_vertex; ++v) {
-    affected[v] = is_changed[mapping_.point(v)];
-    if (is_relinked[mapping_.point(v)]) mapping_.Refresh(v);
-  }
+  for (int p : changed_points)
+    affected.insert(affected.end(), mapping_.OnPoint(p).begin(), mapping_.OnPoint(p).end());
   for (const LinkCut& cut : cuts)
     for (int end : lattice_->links[cut.link])
-      if (const int v = cut_surface_.VertexOf(end); v >= 0) affected[v] = 1;
+      if (const int v = cut_surface_.VertexOf(end); v >= 0) affected.push_back(v);
+  std::sort(affected.begin(), affected.end());
+  affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
+  for (int p : relinked_points)
+    for (int v : mapping_.OnPoint(p)) mapping_.Refresh(v);
 
-  const Surroundings around = FindSurroundings(surface_, affected);
-  for (int v = 0; v < count; ++v)
-    if (affected[v]) mapping_.Unmap(v);
-  for (int v = 0; v < count; ++v)
-    if (affected[v]) mapping_.Map(v, around.normal[around.slot[v]], around.neighbours[around.slot[v]]);
+  slot_.resize(vertices.size(), -1);
+  for (size_t i = 0; i < affected.size(); ++i) slot_[affected[i]] = static_cast<int>(i);
+  const Surroundings around = FindSurroundings(surface_, slot_, affected.size());
+  for (int v : affected) {
+    mapping_.Unmap(v);
+    slot_[v] = -1;
+  }
+  for (size_t i = 0; i < affected.size(); ++i) mapping_.Map(affected[i], around.normal[i], around.neighbours[i]);
   FindFragments();
   ++surface_.version;
+  return affected;
 }
 
 void SoftBody::FindFragments() {

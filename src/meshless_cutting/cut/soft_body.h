@@ -52,8 +52,9 @@ class SoftBody {
   const std::vector<int>& point_fragment() const { return point_fragment_; }
 
  private:
-  void MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points, int first_new_vertex,
-                  const std::vector<LinkCut>& cuts);
+  /// Returns the drawn vertices that were mapped anew, sorted.
+  std::vector<int> MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points,
+                              int first_new_vertex, const std::vector<LinkCut>& cuts);
   void FindFragments();
 
   const Lattice* lattice_;
@@ -68,6 +69,7 @@ class SoftBody {
   VertexMapping mapping_;
   Surface surface_;
   std::vector<int> point_fragment_;
+  std::vector<int> slot_;  // scratch of MapSurface: per drawn vertex, -1 between calls
   std::optional<LatticeMotion> motion_;
   std::vector<Eigen::Vector3d> particles_t0_, surface_t0_;  // start of the next crossing window
 };

@@ -42,19 +42,22 @@ void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
     for (int p : points_->InCell(grid_->CellIndex(cell))) members.push_back({p, p * K + k, 0});
   }
   std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.point < b.point; });
-  for (size_t i = 0; i < members.size(); ++i) members[i].root = static_cast<int>(i);
+  member_of_.resize(points_->points().size(), -1);
+  for (size_t i = 0; i < members.size(); ++i) {
+    members[i].root = static_cast<int>(i);
+    member_of_[members[i].point] = static_cast<int>(i);
+  }
   auto find = [&](int i) {
     while (members[i].root != i) i = members[i].root = members[members[i].root].root;
     return i;
   };
   for (size_t i = 0; i < members.size(); ++i)
     for (int q : points_->Neighbours(members[i].point)) {
-      const auto j =
-          std::lower_bound(members.begin(), members.end(), q, [](const Member& m, int p) { return m.point < p; });
-      if (j == members.end() || j->point != q) continue;
-      const int a = find(static_cast<int>(i)), b = find(static_cast<int>(j - members.begin()));
+      if (member_of_[q] < 0) continue;
+      const int a = find(static_cast<int>(i)), b = find(member_of_[q]);
       members[std::max(a, b)].root = std::min(a, b);
     }
+  for (const Member& member : members) member_of_[member.point] = -1;
 
   std::map<int, double> volume;  // per group
   for (size_t i = 0; i < members.size(); ++i)

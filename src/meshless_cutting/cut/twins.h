@@ -39,6 +39,7 @@ class Twins {
   double density_;
   std::vector<Box> fixed_;
   std::vector<int> relinked_;
+  std::vector<int> member_of_;  // scratch of SplitNode: per point, -1 between calls
 };
 
 }  // namespace meshless_cutting

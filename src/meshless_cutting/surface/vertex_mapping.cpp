@@ -18,6 +18,18 @@ void VertexMapping::Add(const Eigen::Vector3d& X, int anchor) {
   links_.weights.resize(links_.weights.size() + links_.support_size, 0);
 }
 
+void VertexMapping::Unmap(int v) {
+  if (point_[v] < 0) return;
+  std::vector<int>& on_point = on_point_[point_[v]];
+  on_point.erase(std::find(on_point.begin(), on_point.end(), v));
+  point_[v] = -1;
+}
+
+const std::vector<int>& VertexMapping::OnPoint(int p) const {
+  static const std::vector<int> none;
+  return static_cast<size_t>(p) < on_point_.size() ? on_point_[p] : none;
+}
+
 bool VertexMapping::SharesParticle(int p, int q) const {
   if (p == q) return true;
   const int K = links_.support_size;
@@ -36,9 +48,10 @@ void VertexMapping::Map(int v, const Eigen::Vector3d& normal, const std::vector<
     if (d < nearest_d) nearest = p, nearest_d = d;
     if (to_point.dot(normal) > 0) continue;
     if (d < below_d) below = p, below_d = d;
+    if (d >= chosen_d) continue;
     const bool shares = std::all_of(neighbours.begin(), neighbours.end(),
                                     [&](int w) { return point_[w] < 0 || SharesParticle(p, point_[w]); });
-    if (shares && d < chosen_d) chosen = p, chosen_d = d;
+    if (shares) chosen = p, chosen_d = d;
   }
   ++statistics_.mapped;
   if (chosen < 0) {
@@ -75,15 +88,20 @@ void VertexMapping::Refresh(int v) {
 }
 
 void VertexMapping::Assign(int v, int point) {
+  Unmap(v);
   point_[v] = point;
+  if (static_cast<size_t>(point) >= on_point_.size()) on_point_.resize(point + 1);
+  on_point_[point].push_back(v);
   Refresh(v);
   const size_t K = static_cast<size_t>(links_.support_size);
   shape_->Values(points_->points()[point].cell, rest_[v], &links_.weights[v * K]);
 }
 
-bool VertexMapping::convex(int v) const {
+double VertexMapping::overshoot(int v) const {
   const size_t K = static_cast<size_t>(links_.support_size);
-  return std::all_of(&links_.weights[v * K], &links_.weights[v * K] + K, [](double w) { return w >= 0; });
+  double sum = 0;
+  for (size_t k = 0; k < K; ++k) sum += std::max(0.0, -links_.weights[v * K + k]);
+  return sum;
 }
 
 Eigen::Vector3d VertexMapping::Position(int v, const std::vector<Eigen::Vector3d>& particles) const {
@@ -91,6 +109,21 @@ Eigen::Vector3d VertexMapping::Position(int v, const std::vector<Eigen::Vector3d
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (size_t k = 0; k < K; ++k) x += links_.weights[v * K + k] * particles[links_.particles[v * K + k]];
   return x;
+}
+
+void VertexMapping::Positions(int v, const std::vector<Eigen::Vector3d>& particles_t0,
+                              const std::vector<Eigen::Vector3d>& particles_t1, Eigen::Vector3d& x_t0,
+                              Eigen::Vector3d& x_t1) const {
+  const size_t K = static_cast<size_t>(links_.support_size);
+  const double* weights = &links_.weights[v * K];
+  const int* particles = &links_.particles[v * K];
+  Eigen::Vector3d sum_t0 = Eigen::Vector3d::Zero(), sum_t1 = sum_t0;
+  for (size_t k = 0; k < K; ++k) {
+    sum_t0 += weights[k] * particles_t0[particles[k]];
+    sum_t1 += weights[k] * particles_t1[particles[k]];
+  }
+  x_t0 = sum_t0;
+  x_t1 = sum_t1;
 }
 
 }  // namespace meshless_cutting

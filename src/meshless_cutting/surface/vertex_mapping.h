@@ -31,7 +31,7 @@ class VertexMapping {
   void Add(const Eigen::Vector3d& X, int anchor);
 
   /// Forgets the mapping of v, so that it puts no condition on its neighbours until it is mapped again.
-  void Unmap(int v) { point_[v] = -1; }
+  void Unmap(int v);
 
   /// Maps vertex v on the nearest qualifying point. `normal`: outward surface normal at rest, zero inside the object.
   /// `neighbours`: vertices that form a triangle with v; those not mapped yet put no condition.
@@ -47,14 +47,20 @@ class VertexMapping {
 
   int size() const { return static_cast<int>(point_.size()); }
   int point(int v) const { return point_[v]; }
+  /// Vertices that are mapped on point p, in no particular order; none for a point that no vertex was ever mapped on.
+  const std::vector<int>& OnPoint(int p) const;
   int anchor(int v) const { return anchor_[v]; }
   const Eigen::Vector3d& rest(int v) const { return rest_[v]; }
-  /// True when x_v is a convex combination of the particles: it stays within their bounding box.
-  bool convex(int v) const;
+  /// How far x_v can be outside the bounding box of its particles, as a share of the box's extent per axis: the sum of
+  /// its negative weights. 0: a convex combination.
+  double overshoot(int v) const;
   const SurfacePoints& links() const { return links_; }
   const MappingStatistics& statistics() const { return statistics_; }
 
   Eigen::Vector3d Position(int v, const std::vector<Eigen::Vector3d>& particles) const;
+  /// The same for two states at once.
+  void Positions(int v, const std::vector<Eigen::Vector3d>& particles_t0,
+                 const std::vector<Eigen::Vector3d>& particles_t1, Eigen::Vector3d& x_t0, Eigen::Vector3d& x_t1) const;
 
  private:
   bool SharesParticle(int p, int q) const;
@@ -65,6 +71,7 @@ class VertexMapping {
   const Tissue* tissue_;
   std::vector<Eigen::Vector3d> rest_;
   std::vector<int> anchor_, point_;
+  std::vector<std::vector<int>> on_point_;
   SurfacePoints links_;
   MappingStatistics statistics_;
 };
