@@ -310,6 +310,14 @@ std::vector<int> Simulation::MappedPoints() const {
   return points;
 }
 
+void Simulation::CountPaperCriteria() { parts_->body->CountPaperCriteria(); }
+const MappingStatistics& Simulation::mapping_statistics() const { return parts_->body->mapping().statistics(); }
+const PaperCriteriaCounts& Simulation::paper_criteria() const {
+  static const PaperCriteriaCounts none;
+  const PaperCriteria* counted = parts_->body->mapping().paper_criteria();
+  return counted ? counted->counts() : none;
+}
+
 std::string Simulation::CheckInvariants() const { return CheckBody(*parts_->body); }
 
 }  // namespace meshless_cutting

@@ -14,6 +14,7 @@
 #include "lattice/lattice_builder.h"
 #include "scene/scene.h"
 #include "surface/surface.h"
+#include "surface/vertex_mapping.h"
 #include "tool/tool.h"
 
 namespace meshless_cutting {
@@ -76,6 +77,12 @@ class Simulation {
   /// on.
   std::vector<Eigen::Vector3d> IntegrationPointPositions() const;
   std::vector<int> MappedPoints() const;
+
+  /// The paper's mapping criteria at work: how often each decided, and, after CountPaperCriteria(), what they would
+  /// have done without the graph. Both since load or Reset().
+  void CountPaperCriteria();
+  const MappingStatistics& mapping_statistics() const;
+  const PaperCriteriaCounts& paper_criteria() const;
 
   /// All invariants of topology and mapping, for tests; empty when they hold, else the first that does not, in words.
   std::string CheckInvariants() const;

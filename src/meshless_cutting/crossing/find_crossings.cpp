@@ -117,22 +117,39 @@ void CrossingFinder::FindNearGroups(const Bounds& box, const LatticeMotion& obje
       near_groups_.push_back(static_cast<int>(g));
 }
 
+std::uint8_t CrossingFinder::BlockCode(int b, const Bounds& box, const LatticeMotion& object) {
+  const MotionBlock& block = object.blocks().blocks()[b];
+  const int *particles = object.block_particles(b), count = object.support_size();
+  std::uint8_t code = kBeyondAll;
+  if (block.overshoot > 0) {
+    const Bounds bounds = BoundParticles<Bounds>(particles, count, block.overshoot, object);
+    code = Outcode(bounds.min, bounds.max, box);
+  } else {
+    for (int k = 0; k < count; ++k) {
+      const int j = particles[k];
+      if (std::exchange(particle_search_[j], search_) != search_) {
+        const Eigen::Vector3d &x0 = object.particles_t0()[j], &x1 = object.particles_t1()[j];
+        particle_code_[j] = Outcode(x0.cwiseMin(x1), x0.cwiseMax(x1), box);
+      }
+      code &= particle_code_[j];
+    }
+  }
+  for (int v : block.astray) {
+    const Eigen::Vector3d x = object.At(v).start;
+    code &= Outcode(x, x, box);
+  }
+  return code;
+}
+
 void CrossingFinder::FindNearBlocks(const Bounds& box, const LatticeMotion& object) {
   const auto& blocks = object.blocks().blocks();
   const auto& groups = object.blocks().groups();
   block_code_.resize(blocks.size());
   for (size_t b = 0; b < blocks.size(); ++b) block_code_[b] = blocks[b].group < 0 ? kBeyondAll : group_code_[blocks[b].group];
+  particle_code_.resize(object.particles_t1().size());
+  particle_search_.resize(object.particles_t1().size(), 0);
   for (int g : near_groups_)
-    for (int b : groups[g].blocks) {
-      const Bounds bounds =
-          BoundParticles<Bounds>(object.block_particles(b), object.support_size(), blocks[b].overshoot, object);
-      std::uint8_t code = Outcode(bounds.min, bounds.max, box);
-      for (int v : blocks[b].astray) {
-        const Eigen::Vector3d x = object.At(v).start;
-        code &= Outcode(x, x, box);
-      }
-      block_code_[b] = code;
-    }
+    for (int b : groups[g].blocks) block_code_[b] = BlockCode(b, box, object);
   block_near_.assign(blocks.size(), 0);
   near_blocks_.clear();
   for (int g : near_groups_)

@@ -47,6 +47,7 @@ class CrossingFinder {
   };
   void FindNearGroups(const Bounds& box, const LatticeMotion& object);
   void FindNearBlocks(const Bounds& box, const LatticeMotion& object);
+  std::uint8_t BlockCode(int block, const Bounds& box, const LatticeMotion& object);
   const MovingVertex& Place(int vertex, const Bounds& box, const LatticeMotion& object);
   void TestLink(int link, const BladeMotion& blade);
 
@@ -57,6 +58,8 @@ class CrossingFinder {
   std::vector<GroupBounds> group_bounds_;
   std::vector<std::uint8_t> group_code_, block_code_, block_near_;
   std::vector<int> near_groups_, near_blocks_;
+  std::vector<std::uint8_t> particle_code_;
+  std::vector<std::uint32_t> particle_search_;  // that the code was made in
   std::vector<MovingVertex> vertices_;
   std::uint32_t search_ = 0;
 };

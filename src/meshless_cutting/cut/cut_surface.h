@@ -34,6 +34,8 @@ class CutSurface {
   const std::vector<SurfaceVertex>& vertices() const { return vertices_; }
   /// Surface vertex of a lattice vertex, -1 for one inside the object.
   int VertexOf(int lattice_vertex) const { return skin_vertex_[lattice_vertex]; }
+  /// Drawn vertex at the cut of a link on the side of its first (0) or second (1) vertex; -1: not drawn.
+  int VertexOnLink(int link, int side) const { return link_vertex_[link][side]; }
   /// Tetrahedra whose pieces, or the shape of the faces between them, the last Update() changed. Sorted.
   const std::vector<int>& changed_tetrahedra() const { return changed_; }
   /// One lip of all cut faces, m^2, at rest.

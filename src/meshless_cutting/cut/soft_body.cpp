@@ -17,18 +17,10 @@ BackgroundGrid FitGrid(const Lattice& lattice, const ObjectConfig& config) {
   return BackgroundGrid(low, high, config.cell_size_m, ShapeFunctions::Margin(config.support_radius_cells));
 }
 
-/// Surroundings of some vertices of a surface: outward normals at rest (not unit) and the vertices they share triangles
-/// with.
-struct Surroundings {
-  std::vector<Eigen::Vector3d> normal;
-  std::vector<std::vector<int>> neighbours;
-};
-
-/// `slot`: for each vertex its place in the result, -1 for vertices that are not asked for.
-Surroundings FindSurroundings(const Surface& surface, const std::vector<int>& slot, size_t count) {
-  Surroundings around;
-  around.normal.assign(count, Eigen::Vector3d::Zero());
-  around.neighbours.resize(count);
+/// Outward normals and neighbours of some vertices of a surface. `slot`: for each vertex its place in the result, -1
+/// for vertices that are not asked for.
+std::vector<MappingConditions> FindConditions(const Surface& surface, const std::vector<int>& slot, size_t count) {
+  std::vector<MappingConditions> conditions(count);
   for (const auto& t : surface.triangles) {
     if ((slot[t[0]] & slot[t[1]] & slot[t[2]]) == -1) continue;
     const Eigen::Vector3d& a = surface.rest_positions[t[0]];
@@ -36,11 +28,11 @@ Surroundings FindSurroundings(const Surface& surface, const std::vector<int>& sl
     for (int i = 0; i < 3; ++i) {
       const int s = slot[t[i]];
       if (s < 0) continue;
-      around.normal[s] += n;
-      around.neighbours[s].push_back(static_cast<int>(t[(i + 1) % 3]));  // each once: the surface is closed
+      conditions[s].normal += n;
+      conditions[s].neighbours.push_back(static_cast<int>(t[(i + 1) % 3]));  // each once: the surface is closed
     }
   }
-  return around;
+  return conditions;
 }
 
 }  // namespace
@@ -108,12 +100,20 @@ std::vector<int> SoftBody::MapSurface(const std::vector<int>& changed_points, co
 
   slot_.resize(vertices.size(), -1);
   for (size_t i = 0; i < affected.size(); ++i) slot_[affected[i]] = static_cast<int>(i);
-  const Surroundings around = FindSurroundings(surface_, slot_, affected.size());
+  const std::vector<MappingConditions> conditions = FindConditions(surface_, slot_, affected.size());
+  // The ends of a cut link get the plane of the cut: through the cut, with the normal of the lip on their side.
+  for (const LinkCut& cut : cuts)
+    for (int side : {0, 1}) {
+      const int end = cut_surface_.VertexOf(lattice_->links[cut.link][side]);
+      const int lip = cut_surface_.VertexOnLink(cut.link, side);
+      if (end < 0 || lip < 0 || lip == cut_surface_.VertexOnLink(cut.link, 1 - side)) continue;
+      if (slot_[lip] >= 0) mapping_.SetCutPlane(end, {vertices[lip].rest, conditions[slot_[lip]].normal});
+    }
   for (int v : affected) {
     mapping_.Unmap(v);
     slot_[v] = -1;
   }
-  for (size_t i = 0; i < affected.size(); ++i) mapping_.Map(affected[i], around.normal[i], around.neighbours[i]);
+  for (size_t i = 0; i < affected.size(); ++i) mapping_.Map(affected[i], conditions[i]);
   FindFragments();
   ++surface_.version;
   return affected;

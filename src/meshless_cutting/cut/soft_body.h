@@ -46,6 +46,8 @@ class SoftBody {
   const TissueState& state() const { return state_; }
   TissueState& mutable_state() { return state_; }
   const VertexMapping& mapping() const { return mapping_; }
+  /// From now on counts what the paper's mapping criteria would do without the graph; see PaperCriteria.
+  void CountPaperCriteria() { mapping_.CountPaperCriteria(grid_); }
   const Surface& surface() const { return surface_; }
   const LatticeMotion& motion() const { return *motion_; }  // only where it can be cut
   /// Fragment of each integration point, numbered as in Surface.

@@ -14,6 +14,7 @@ void VertexMapping::Add(const Eigen::Vector3d& X, int anchor) {
   rest_.push_back(X);
   anchor_.push_back(anchor);
   point_.push_back(-1);
+  cut_plane_.emplace_back();
   links_.particles.resize(links_.particles.size() + links_.support_size, 0);
   links_.weights.resize(links_.weights.size() + links_.support_size, 0);
 }
@@ -30,38 +31,56 @@ const std::vector<int>& VertexMapping::OnPoint(int p) const {
   return static_cast<size_t>(p) < on_point_.size() ? on_point_[p] : none;
 }
 
-bool VertexMapping::SharesParticle(int p, int q) const {
-  if (p == q) return true;
+void VertexMapping::CountPaperCriteria(const BackgroundGrid& grid) { paper_.emplace(*points_, grid); }
+
+bool VertexMapping::SharesParticles(int p, const std::vector<int>& vertices) const {
   const int K = links_.support_size;
   const int* a = &tissue_->point_particles[static_cast<size_t>(p) * K];
-  const int* b = &tissue_->point_particles[static_cast<size_t>(q) * K];
-  return std::find_first_of(a, a + K, b, b + K) != a + K;
+  return std::all_of(vertices.begin(), vertices.end(), [&](int w) {
+    const int q = point_[w];
+    if (q < 0 || q == p) return true;
+    const int* b = &tissue_->point_particles[static_cast<size_t>(q) * K];
+    return std::find_first_of(a, a + K, b, b + K) != a + K;
+  });
 }
 
-void VertexMapping::Map(int v, const Eigen::Vector3d& normal, const std::vector<int>& neighbours) {
+void VertexMapping::Map(int v, const MappingConditions& conditions) {
   const Eigen::Vector3d& X = rest_[v];
-  int nearest = -1, below = -1, chosen = -1;
-  double nearest_d = std::numeric_limits<double>::infinity(), below_d = nearest_d, chosen_d = nearest_d;
+  const CutPlane& plane = cut_plane_[v];
+  auto below_tangent = [&](int p) { return (points_->points()[p].centroid - X).dot(conditions.normal) <= 0; };
+  auto below_cut = [&](int p) { return (points_->points()[p].centroid - plane.point).dot(plane.normal) <= 0; };
+  auto shares = [&](int p) { return SharesParticles(p, conditions.neighbours); };
+  // The nearest point of those that meet the criteria up to each.
+  struct Choice {
+    int point = -1;
+    double distance2 = std::numeric_limits<double>::infinity();
+    bool Offer(int p, double d) {
+      if (d >= distance2) return false;
+      point = p;
+      distance2 = d;
+      return true;
+    }
+  } nearest, tangent, cut, chosen;
   for (int p : points_->OfVertex(anchor_[v])) {
-    const Eigen::Vector3d to_point = points_->points()[p].centroid - X;
-    const double d = to_point.squaredNorm();
-    if (d < nearest_d) nearest = p, nearest_d = d;
-    if (to_point.dot(normal) > 0) continue;
-    if (d < below_d) below = p, below_d = d;
-    if (d >= chosen_d) continue;
-    const bool shares = std::all_of(neighbours.begin(), neighbours.end(),
-                                    [&](int w) { return point_[w] < 0 || SharesParticle(p, point_[w]); });
-    if (shares) chosen = p, chosen_d = d;
+    const double d = (points_->points()[p].centroid - X).squaredNorm();
+    nearest.Offer(p, d);
+    if (!below_tangent(p)) continue;
+    tangent.Offer(p, d);
+    if (!below_cut(p)) continue;
+    cut.Offer(p, d);
+    if (d < chosen.distance2 && shares(p)) chosen.Offer(p, d);
   }
   ++statistics_.mapped;
-  if (chosen < 0) {
+  if (chosen.point < 0) {
     ++statistics_.relaxed;
-    chosen = below >= 0 ? below : nearest;
+    chosen.point = cut.point >= 0 ? cut.point : tangent.point >= 0 ? tangent.point : nearest.point;
   } else {
-    if (nearest != below) ++statistics_.tangent_plane;
-    if (below != chosen) ++statistics_.shared_particle;
+    statistics_.tangent_plane += nearest.point != tangent.point;
+    statistics_.cut_plane += tangent.point != cut.point;
+    statistics_.shared_particle += cut.point != chosen.point;
   }
-  Assign(v, chosen);
+  if (paper_) paper_->Count(X, points_->OfVertex(anchor_[v]), {below_tangent, below_cut, shares});
+  Assign(v, chosen.point);
 }
 
 void VertexMapping::MapInside(int v) {
