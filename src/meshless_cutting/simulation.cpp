@@ -318,6 +318,8 @@ const PaperCriteriaCounts& Simulation::paper_criteria() const {
   return counted ? counted->counts() : none;
 }
 
+const SoftBody& Simulation::body() const { return *parts_->body; }
+
 std::string Simulation::CheckInvariants() const { return CheckBody(*parts_->body); }
 
 }  // namespace meshless_cutting

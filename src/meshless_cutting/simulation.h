@@ -19,6 +19,8 @@
 
 namespace meshless_cutting {
 
+class SoftBody;
+
 /// What one frame cost and how good it is. Times are wall times of this run and the only thing here that is not
 /// reproducible.
 struct FrameStatistics {
@@ -83,6 +85,9 @@ class Simulation {
   void CountPaperCriteria();
   const MappingStatistics& mapping_statistics() const;
   const PaperCriteriaCounts& paper_criteria() const;
+
+  /// Topology, mapping and state, for tests and studies; another one after Reset().
+  const SoftBody& body() const;
 
   /// All invariants of topology and mapping, for tests; empty when they hold, else the first that does not, in words.
   std::string CheckInvariants() const;
