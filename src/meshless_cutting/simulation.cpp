@@ -6,13 +6,18 @@
 #include <stdexcept>
 #include <utility>
 
+#include "boundary/dead_loads.h"
 #include "crossing/find_crossings.h"
 #include "cut/soft_body.h"
 #include "cut/stroke_log.h"
+#include "lattice/primitives.h"
 #include "simulation_checks.h"
 
 namespace meshless_cutting {
 namespace {
+
+/// Width of the rim of a slit, in lattice sizes.
+constexpr double kSlitRim = 1e-3;
 
 using Clock = std::chrono::steady_clock;
 
@@ -31,7 +36,8 @@ class Stopwatch {
 FilledLattice Fill(const Scene& scene) {
   TriangleMesh mesh;
   try {
-    mesh = ReadTriangleMesh(scene.object.mesh, scene.object.scale);
+    mesh = scene.object.primitive ? MeshOf(*scene.object.primitive)
+                                  : ReadTriangleMesh(scene.object.mesh, scene.object.scale);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(SceneMessage(scene, "object.mesh", "", error.what()));
   }
@@ -52,7 +58,8 @@ FilledLattice Fill(const Scene& scene) {
   try {
     return FillWithLattice(mesh, scene.object.lattice_size_m);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(SceneMessage(scene, "object.mesh", scene.object.mesh.string(), error.what()));
+    throw std::runtime_error(SceneMessage(scene, scene.object.primitive ? "object.primitive" : "object.mesh",
+                                          scene.object.mesh.string(), error.what()));
   }
 }
 
@@ -74,7 +81,11 @@ struct Cutting {
 };
 
 DynamicsConfig MakeDynamicsConfig(const Scene& scene) {
-  return {scene.time_step_s, scene.object.material, scene.solver, scene.gravity_m_s2, scene.damping, scene.obstacles};
+  DynamicsConfig config{scene.time_step_s,  scene.object.material, scene.solver,
+                        scene.gravity_m_s2, scene.damping,         scene.obstacles};
+  for (const MaterialRegion& region : scene.object.regions) config.region_materials.push_back(region.material);
+  config.stabilisation = scene.object.stabilisation;
+  return config;
 }
 
 }  // namespace
@@ -93,39 +104,55 @@ struct Simulation::Parts {
     built.fixed = !scene.object.fixed.empty();
     built.obstacles = !scene.obstacles.empty();
     built.tools = !scene.tools.empty();
+    built.prescribed = !scene.object.prescribed.empty();
+    built.loads = !scene.object.loads.empty();
+    built.regions = !scene.object.regions.empty();
+    built.slits = !scene.object.slits.empty();
+    built.probes = !scene.probes.empty();
     report("placing integration points and particles", 0.6);
     Build();
-    for (size_t i = 0; i < scene.object.fixed.size(); ++i) CheckFixed(i);
+    for (size_t i = 0; i < scene.object.fixed.size(); ++i) {
+      CheckHeld(scene.object.fixed[i], "object.fixed[" + std::to_string(i) + "]");
+    }
+    for (size_t i = 0; i < scene.object.prescribed.size(); ++i) {
+      CheckHeld(scene.object.prescribed[i].box, "object.prescribed[" + std::to_string(i) + "]");
+    }
     report("ready", 1);
   }
 
-  void CheckFixed(size_t i) const {
-    const Box& box = scene.object.fixed[i];
+  void CheckHeld(const Box& box, const std::string& key) const {
     const double slack = 1e-9 * body->grid().spacing().maxCoeff();
     for (const Eigen::Vector3d& X : body->tissue().particle_rest)
-      if ((X.array() >= box.min.array() - slack).all() && (X.array() <= box.max.array() + slack).all()) return;
-    throw std::runtime_error(
-        SceneMessage(scene, "object.fixed[" + std::to_string(i) + "]", "",
-                     "holds no particle; expected a box in the object frame that reaches at least one "
-                     "node of the background grid; enlarge it"));
+      if (box.Holds(X, slack)) return;
+    throw std::runtime_error(SceneMessage(scene, key, "",
+                                          "holds no particle; expected a box in the object frame that reaches at least "
+                                          "one node of the background grid; enlarge it"));
   }
 
   /// Everything that changes while the simulation runs.
   void Build() {
     cutting.reset();
-    body = std::make_unique<SoftBody>(lattice, scene.object, built.tools);
+    probes.reset();
+    body = std::make_unique<SoftBody>(lattice, scene.object, built.tools || built.slits);
+    if (built.slits) OpenSlits();
     dynamics = std::make_unique<Dynamics>(MakeDynamicsConfig(scene), body->tissue());
     if (built.tools) cutting.emplace(scene, *body);
+    if (built.fixed || built.prescribed) driven.emplace(scene);
+    if (built.loads) loads.emplace(scene);
+    if (built.probes) probes.emplace(scene, lattice, body->points(), body->shape(), body->tissue());
+    TissueChanged();
     events.clear();
     statistics = FrameStatistics();
     statistics.time_s = start_s;
     Count();
   }
 
+  void OpenSlits();
+  void TissueChanged();
   void MoveTools(double t0_s, double t1_s);
   void FindCrossings();
   void Cut();
-  void Advance();
+  void Advance(double t1_s);
   void Count();
 
   Scene scene;
@@ -137,6 +164,9 @@ struct Simulation::Parts {
   std::unique_ptr<SoftBody> body;
   std::unique_ptr<Dynamics> dynamics;
   std::optional<Cutting> cutting;
+  std::optional<DrivenRegions> driven;
+  std::optional<DeadLoads> loads;
+  std::optional<Probes> probes;
   std::vector<StrokeEvent> events;
   FrameStatistics statistics;
 };
@@ -161,7 +191,7 @@ void Simulation::Step() {
     s.cut_s = watch.Lap();
   }
   p.body->BeginAdvance();
-  p.Advance();  // 4. elastic dynamics
+  p.Advance(t1_s);  // 4. elastic dynamics
   s.advance_s = watch.Lap();
   p.body->EndAdvance();  //    and the surface after it
   s.map_surface_s = watch.Lap();
@@ -211,6 +241,7 @@ void Simulation::Parts::Cut() {
     const double area_before = body->cut_surface().cut_area();
     body->Cut(cuts);
     dynamics->TissueChanged(body->tissue());
+    TissueChanged();
     const double area = body->cut_surface().cut_area() - area_before;
     for (auto& state : cutting->tools) {
       state.cut.area_m2 = area * static_cast<double>(state.cut.crossings.size()) / static_cast<double>(cuts.size());
@@ -232,7 +263,44 @@ void Simulation::Parts::Cut() {
   }
 }
 
-void Simulation::Parts::Advance() {
+/// Boundary conditions and probes after a load or a cut.
+void Simulation::Parts::TissueChanged() {
+  if (driven) driven->TissueChanged(body->tissue());
+  if (probes) probes->TissueChanged();
+  if (!loads) return;
+  const int missed = loads->TissueChanged(body->tissue(), body->surface(), body->mapping().links());
+  if (missed < 0 || statistics.step > 0) return;
+  throw std::runtime_error(SceneMessage(scene, "object.loads[" + std::to_string(missed) + "].box_m", "",
+                                        "holds no triangle of the skin; expected a box in the object frame that holds a part "
+                                        "of the skin; enlarge it"));
+}
+
+/// Draws a blade through each slit before the first frame. A slit is closed: what its rim touches is cut, so that one which ends on
+/// a layer of lattice vertices, which stand a millionth of the lattice off their place, ends there and not somewhere below.
+void Simulation::Parts::OpenSlits() {
+  CrossingFinder finder(body->lattice(), body->graph());
+  for (const Slit& slit : scene.object.slits) {
+    const double rim = kSlitRim * scene.object.lattice_size_m;
+    const Eigen::Vector3d a = slit.edges[0].normalized() * rim, b = slit.edges[1].normalized() * rim;
+    BladeWindow window;
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Vector3d start = slit.corner - a - b + i * (slit.edges[0] + 2 * a);
+      window.points_t0.push_back(scene.object.T_WO * start);
+      window.points_t1.push_back(scene.object.T_WO * Eigen::Vector3d(start + slit.edges[1] + 2 * b));
+    }
+    std::vector<LinkCut> cuts;
+    for (const Crossing& crossing : finder.Find({window}, body->motion())) cuts.push_back(crossing.cut);
+    body->CloseWindow();
+    body->Cut(cuts);
+    body->BeginAdvance();
+    body->EndAdvance();
+  }
+}
+
+void Simulation::Parts::Advance(double t1_s) {
+  const double time_s = t1_s - start_s;  // schedules begin with the scene, whatever the clock says
+  if (built.prescribed) driven->Drive(body->tissue(), time_s, *dynamics);
+  if (loads) dynamics->SetForces(loads->At(time_s));
   const AdvanceResult result = dynamics->Advance(body->tissue(), body->mapping().links(), body->mutable_state());
   statistics.status = result.status;
   statistics.newton_iterations = result.newton_iterations;
@@ -281,6 +349,19 @@ const Surface& Simulation::surface() const { return parts_->body->surface(); }
 const std::vector<StrokeEvent>& Simulation::events() const { return parts_->events; }
 const FrameStatistics& Simulation::statistics() const { return parts_->statistics; }
 const BuiltParts& Simulation::parts() const { return parts_->built; }
+const std::vector<ProbeReading>& Simulation::probes() const {
+  static const std::vector<ProbeReading> kNone;
+  return parts_->probes ? parts_->probes->Read(parts_->body->state()) : kNone;
+}
+
+const std::vector<Reaction>& Simulation::reactions() const {
+  static const std::vector<Reaction> kNone;
+  static const std::vector<Eigen::Vector3d> kNoForces;
+  if (!parts_->driven) return kNone;
+  return parts_->driven->Reactions(parts_->body->tissue(), parts_->body->state(), *parts_->dynamics,
+                                   parts_->loads ? parts_->loads->forces() : kNoForces);
+}
+
 const Scene& Simulation::scene() const { return parts_->scene; }
 const LatticeReport& Simulation::lattice_report() const { return parts_->lattice_report; }
 

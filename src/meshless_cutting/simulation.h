@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "boundary/driven_regions.h"
+#include "boundary/probes.h"
 #include "cut/stroke_event.h"
 #include "dynamics/dynamics.h"
 #include "lattice/lattice_builder.h"
@@ -37,7 +39,8 @@ struct FrameStatistics {
 
 /// Which parts were built at load. A part that is false costs nothing in any frame.
 struct BuiltParts {
-  bool gravity = false, damping = false, fixed = false, obstacles = false, tools = false;
+  bool gravity = false, damping = false, fixed = false, prescribed = false, loads = false, regions = false, slits = false,
+       obstacles = false, tools = false, probes = false;
 };
 
 /// Called during a long load: stage in words, share done in [0, 1].
@@ -68,6 +71,10 @@ class Simulation {
   const std::vector<StrokeEvent>& events() const;
   const FrameStatistics& statistics() const;
   const BuiltParts& parts() const;
+  /// Readings of the scene's probes, in its order. Computed when asked for.
+  const std::vector<ProbeReading>& probes() const;
+  /// With what the fixed and then the prescribed regions are held. Computed when asked for; a load or Reset() is no frame.
+  const std::vector<Reaction>& reactions() const;
 
   const Scene& scene() const;
   const LatticeReport& lattice_report() const;

@@ -68,7 +68,7 @@ class ElasticPointsTest : public testing::TestWithParam<SupportShape> {
 
 TEST_P(ElasticPointsTest, SortsPointsByShape) {
   PointGroups groups;
-  groups.Build(tissue_, 1e3);
+  groups.Build(tissue_, {1e3});
   for (int shape = 0; shape < kSupportShapes; ++shape) {
     EXPECT_EQ(groups.groups[shape].batches > 0, shape == static_cast<int>(GetParam()));
   }
@@ -216,7 +216,7 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
   for (int shape = 0; shape < kSupportShapes; ++shape) {
     const Tissue tissue = MakeTissue(static_cast<SupportShape>(shape));
     PointGroups groups;
-    groups.Build(tissue, 1e3);
+    groups.Build(tissue, {1e3});
     Field x;
     for (const Eigen::Vector3d& X : tissue.particle_rest) {
       x.push_back(Vector4::From(X + 1e-3 * Eigen::Vector3d(uniform(generator), uniform(generator), uniform(generator))));

@@ -6,8 +6,9 @@
 namespace meshless_cutting {
 
 Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points,
-             double density_kg_m3, const std::vector<Box>& fixed, Tissue& tissue)
-    : grid_(&grid), shape_(&shape), points_(&points), density_(density_kg_m3), fixed_(fixed) {
+             const ObjectConfig& config, Tissue& tissue)
+    : grid_(&grid), shape_(&shape), points_(&points), materials_(config), held_(config.fixed) {
+  for (const PrescribedRegion& region : config.prescribed) held_.push_back(region.box);
   tissue.support_size = shape.support_size();
   std::vector<int> all(points.points().size()), source;
   for (size_t p = 0; p < all.size(); ++p) all[p] = static_cast<int>(p);
@@ -18,6 +19,10 @@ void Twins::FillPoint(int p, Tissue& tissue) const {
   const int K = tissue.support_size;
   const IntegrationPoint& point = points_->points()[p];
   if (p == tissue.point_count()) {
+    if (materials_.several()) {
+      const int material = point.parent < 0 ? materials_.At(point.centroid) : tissue.point_material[point.parent];
+      tissue.point_material.push_back(material);
+    }
     tissue.point_volume.push_back(0);
     tissue.point_rest.emplace_back();
     tissue.point_gradients.resize(tissue.point_gradients.size() + K);
@@ -81,9 +86,8 @@ void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
     tissue.particle_rest.push_back(X);
     tissue.particle_mass.push_back(0);
     const double slack = 1e-9 * grid_->spacing().maxCoeff();
-    tissue.particle_fixed.push_back(std::any_of(fixed_.begin(), fixed_.end(), [&](const Box& box) {
-      return (X.array() >= box.min.array() - slack).all() && (X.array() <= box.max.array() + slack).all();
-    }));
+    tissue.particle_fixed.push_back(
+        std::any_of(held_.begin(), held_.end(), [&](const Box& box) { return box.Holds(X, slack); }));
     source.push_back(old);
   }
   for (size_t i = 0; i < members.size(); ++i) {
@@ -97,10 +101,11 @@ void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
 void Twins::LumpMass(Tissue& tissue) const {
   const int K = tissue.support_size;
   tissue.particle_mass.assign(tissue.particle_rest.size(), 0);
-  for (int p = 0; p < tissue.point_count(); ++p)
+  for (int p = 0; p < tissue.point_count(); ++p) {
+    const double mass = materials_.density_kg_m3(tissue.material(p)) * tissue.point_volume[p];
     for (int k = 0; k < K; ++k)
-      tissue.particle_mass[tissue.point_particles[p * K + k]] +=
-          density_ * tissue.point_volume[p] * shape_->centre_values()[k];
+      tissue.particle_mass[tissue.point_particles[p * K + k]] += mass * shape_->centre_values()[k];
+  }
 }
 
 const std::vector<int>& Twins::Update(const std::vector<int>& changed_points, Tissue& tissue,

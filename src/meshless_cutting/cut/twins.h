@@ -5,6 +5,7 @@
 
 #include "cut/integration_points.h"
 #include "scene/scene.h"
+#include "tissue/material_regions.h"
 #include "tissue/shape_functions.h"
 #include "tissue/tissue.h"
 
@@ -20,8 +21,8 @@ namespace meshless_cutting {
 class Twins {
  public:
   /// Fills `tissue` at load.
-  Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points, double density_kg_m3,
-        const std::vector<Box>& fixed, Tissue& tissue);
+  Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points,
+        const ObjectConfig& config, Tissue& tissue);
 
   /// Call after IntegrationPoints::Update with the points that it returned. New particles start as copies of what they
   /// were split from: `source` gets one entry per new particle, the particle to copy. Returns the points whose links or
@@ -36,8 +37,8 @@ class Twins {
   const BackgroundGrid* grid_;
   const ShapeFunctions* shape_;
   const IntegrationPoints* points_;
-  double density_;
-  std::vector<Box> fixed_;
+  MaterialRegions materials_;
+  std::vector<Box> held_;  // fixed and prescribed regions
   std::vector<int> relinked_;
   std::vector<int> member_of_;  // scratch of SplitNode: per point, -1 between calls
 };

@@ -31,6 +31,12 @@ constexpr double kEnergyRounding = 1e-15;
 /// Forces below this share of (shear modulus) (cross section of the object) are rounding.
 constexpr double kForceRounding = 1e-8;
 
+std::vector<MaterialConfig> MaterialsOf(const DynamicsConfig& config) {
+  std::vector<MaterialConfig> materials{config.material};
+  materials.insert(materials.end(), config.region_materials.begin(), config.region_materials.end());
+  return materials;
+}
+
 bool IsFinite(const std::vector<Eigen::Vector3d>& values) {
   return std::all_of(values.begin(), values.end(), [](const Eigen::Vector3d& v) { return v.allFinite(); });
 }
@@ -59,7 +65,7 @@ struct Dynamics::Parts {
   Parts(const DynamicsConfig& config_, const Tissue& tissue)
       : config(config_),
         pool(config.solver.threads),
-        points(config.material, pool),
+        points(MaterialsOf(config), config.stabilisation, pool),
         elastic(points),
         potential(elastic, terms, pool),
         newton(potential, config.solver.relative_tolerance, config.solver.newton_iterations) {
@@ -72,6 +78,8 @@ struct Dynamics::Parts {
   }
 
   void TissueChanged(const Tissue& tissue);
+  bool IsMoving() const;
+  Field& Held(const Field& y);
   void Load(const TissueState& state);
   void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
   bool Sleeps(const Tissue& tissue, const TimeScheme& scheme);
@@ -102,6 +110,14 @@ struct Dynamics::Parts {
   Field start_position, start_velocity, start_acceleration;  // of the frame
   Field end_position, end_velocity, end_acceleration;        // of the step in progress, until it is accepted
   Field stage, steady, still, scratch;
+
+  // Scenes that move held particles, or pull: empty in others.
+  std::vector<int> driven;
+  std::vector<Eigen::Vector3d> driven_at_end;
+  Field driven_end;       // per particle, at the end of the frame; meaningful where not free
+  double driven_share = 1;  // of the way that is left to driven_end, what the step in progress goes
+  Field force;            // N per particle
+  double forces = 0;      // N, their norm
 };
 
 void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
@@ -130,6 +146,10 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   const double modulus = points.lame().lambda + 2 * points.lame().mu;
   energy_floor = kEnergyFloor * modulus * volume;
   newton.SetEnergyRounding(kEnergyRounding * modulus * volume);
+  driven.clear();
+  driven_end.clear();
+  force.clear();
+  forces = 0;
   load = std::sqrt(weight) + kForceRounding * points.lame().mu * std::pow(volume, 2.0 / 3);
 }
 
@@ -147,6 +167,26 @@ void Dynamics::Parts::Load(const TissueState& state) {
     start_acceleration[j] = !is_free ? Vector4() : know_acceleration ? Vector4::From(state.acceleration[j]) : body;
   }
   first_step = false;
+  driven_end.clear();
+  if (driven.empty()) return;
+  driven_end = start_position;
+  for (std::size_t i = 0; i < driven.size(); ++i) driven_end[driven[i]] = Vector4::From(driven_at_end[i]);
+}
+
+/// Whether held particles move in this frame.
+bool Dynamics::Parts::IsMoving() const {
+  for (std::size_t j = 0; j < driven_end.size(); ++j) {
+    if (potential.free[j] > 0) continue;
+    const Vector4 way = driven_end[j] - position[j];
+    if (Dot(way, way) > 0) return true;
+  }
+  return false;
+}
+
+/// A copy of y with the held particles where the step wants them.
+Field& Dynamics::Parts::Held(const Field& y) {
+  for (int j = 0; j < particles; ++j) scratch[j] = potential.free[j] > 0 ? y[j] : potential.target[j];
+  return scratch;
 }
 
 /// Sets up the step from position with the given velocities and accelerations.
@@ -160,6 +200,12 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
     if (potential.free[j] == 0) {
       potential.inertia[j] = 0;
       potential.target[j] = still[j] = steady[j] = x;
+      if (!driven_end.empty()) {
+        const Vector4 way = driven_share * (driven_end[j] - x);
+        potential.target[j] = steady[j] = x + scheme.stage() * way;
+        still[j] = steady[j] - (1 / (scheme.rate() * scheme.time_step_s())) * way;
+        reach = std::max(reach, Dot(way, way));
+      }
       continue;
     }
     potential.inertia[j] = tissue.particle_mass[j] * inertia;
@@ -168,6 +214,7 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
     // Gravity and damping proportional to mass are inertia with another target.
     potential.target[j] = x + (scheme.inertia() / inertia) * (scheme.Target(x, v[j], a[j]) - x) +
                           (1 / inertia) * gravity + (mass_damping * scheme.rate() / inertia) * (still[j] - x);
+    if (!force.empty()) potential.target[j] += (1 / potential.inertia[j]) * force[j];
     const Vector4 way = potential.target[j] - x;
     reach = std::max(reach, Dot(way, way));
   }
@@ -184,7 +231,7 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
 /// Where next to nothing moves and the forces balance without inertia, the object sleeps: it stays exactly where it is.
 /// Only under gravity: there, balance means that it is held or lies on something, not that it drifts.
 bool Dynamics::Parts::Sleeps(const Tissue& tissue, const TimeScheme& scheme) {
-  if (!config.gravity_m_s2) return false;
+  if (!config.gravity_m_s2 || IsMoving()) return false;
   double fastest = 0;
   for (int j = 0; j < particles; ++j) fastest = std::max(fastest, Dot(velocity[j], velocity[j]));
   if (std::sqrt(fastest) * scheme.time_step_s() > kSleepingWay * cell) return false;
@@ -204,6 +251,7 @@ double Dynamics::Parts::EnergyOf(const Tissue& tissue, const Field& x, const Fie
   const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
   for (int j = 0; j < particles; ++j) {
     energy += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
+    if (!force.empty()) energy -= Dot(force[j], x[j] - position[j]);
   }
   return energy;
 }
@@ -218,15 +266,16 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
   double energy = newton.Start(stage);
   if (!newton.StartIsConverged(load)) {
     const Field* best = &steady;
+    const bool is_driven = !driven_end.empty();
     for (const Field* guess : {&potential.target, &position}) {
-      const double other = newton.Start(*guess);
+      const double other = newton.Start(is_driven ? Held(*guess) : *guess);
       if (other < energy) {
         energy = other;
         best = guess;
       }
     }
-    if (best != &position) newton.Start(*best);
-    stage = *best;
+    stage = is_driven ? Held(*best) : *best;
+    if (best != &position) newton.Start(stage);
   }
   newton.BeginStep(tissue);
   const NewtonSolver::Result solved = newton.Minimise(stage, load);
@@ -240,7 +289,13 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
   end_velocity = velocity;
   end_acceleration = acceleration;
   for (int j = 0; j < particles; ++j) {
-    if (potential.free[j] > 0) scheme.Finish(stage[j], end_position[j], end_velocity[j], end_acceleration[j]);
+    if (potential.free[j] > 0) {
+      scheme.Finish(stage[j], end_position[j], end_velocity[j], end_acceleration[j]);
+    } else if (!driven_end.empty()) {
+      const Vector4 way = driven_share * (driven_end[j] - position[j]);
+      end_position[j] = position[j] + way;
+      end_velocity[j] = (1 / scheme.time_step_s()) * way;
+    }
   }
   return solved.verdict;
 }
@@ -253,10 +308,10 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
     return true;
   }
   NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
-  if (config.solver.integrator != Integrator::kImplicitEuler &&
+  if (config.solver.integrator == Integrator::kGeneralizedAlpha &&
       (verdict == NewtonSolver::Verdict::kFailed || result.relative_residual > kRoughResidual ||
-       EnergyOf(tissue, end_position, end_velocity) >
-           kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor)) {
+       (!IsMoving() && EnergyOf(tissue, end_position, end_velocity) >
+                           kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor))) {
     // The end of a second order step lies beyond the stage that was solved for. After violence that is no place to go.
     verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, time_step), result);
   }
@@ -266,6 +321,10 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
   position.swap(end_position);
   velocity.swap(end_velocity);
   acceleration.swap(end_acceleration);
+  if (scheme.is_static()) {
+    std::fill(velocity.begin(), velocity.end(), Vector4());
+    std::fill(acceleration.begin(), acceleration.end(), Vector4());
+  }
   return true;
 }
 
@@ -274,6 +333,7 @@ bool Dynamics::Parts::SolveSteps(const Tissue& tissue, int steps, AdvanceResult&
   velocity = start_velocity;
   acceleration = start_acceleration;
   for (int step = 0; step < steps; ++step) {
+    driven_share = 1.0 / (steps - step);
     if (!Solve(tissue, config.time_step_s / steps, result)) return false;
   }
   return true;
@@ -287,6 +347,25 @@ Dynamics::Dynamics(const DynamicsConfig& config, const Tissue& tissue)
 Dynamics::~Dynamics() = default;
 
 void Dynamics::TissueChanged(const Tissue& tissue) { parts_->TissueChanged(tissue); }
+
+void Dynamics::SetDriven(const std::vector<int>& particles, const std::vector<Eigen::Vector3d>& at_end) {
+  parts_->driven = particles;
+  parts_->driven_at_end = at_end;
+}
+
+void Dynamics::SetForces(const std::vector<Eigen::Vector3d>& forces) {
+  Parts& p = *parts_;
+  p.force.resize(forces.size());
+  double sum = 0;
+  for (std::size_t j = 0; j < forces.size(); ++j) {
+    p.force[j] = Vector4::From(forces[j]);
+    sum += forces[j].squaredNorm();
+  }
+  p.load += std::sqrt(sum) - p.forces;
+  p.forces = std::sqrt(sum);
+}
+
+Eigen::Vector3d Dynamics::ElasticForce(int j) const { return parts_->scratch[j].vector(); }
 
 AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state) {
   Parts& p = *parts_;

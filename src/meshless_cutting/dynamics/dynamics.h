@@ -27,6 +27,8 @@ struct DynamicsConfig {
   std::optional<Eigen::Vector3d> gravity_m_s2;  // scene frame
   std::optional<DampingConfig> damping;
   std::vector<ObstacleConfig> obstacles;  // scene frame
+  std::vector<MaterialConfig> region_materials = {};  // of Tissue::point_material 1, 2, ...
+  double stabilisation = 1;                      // weight of the term against zero-energy modes
 };
 
 struct AdvanceResult {
@@ -50,6 +52,14 @@ class Dynamics {
   /// One time step of config.time_step_s. `skin` are the vertices that touch obstacles; unused without obstacles.
   /// Same input, same bits, whatever config.solver.threads is. Allocates nothing unless the tissue or the skin grew.
   AdvanceResult Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state);
+
+  /// Fixed particles that the next frames move: where each is at their end, m, scene frame; in between it moves straight. Those that
+  /// are not named stay. Holds until it is set again or the tissue changes.
+  void SetDriven(const std::vector<int>& particles, const std::vector<Eigen::Vector3d>& at_end);
+  /// Dead forces, N, one per particle of the tissue, constant during the next frames; empty: none. Holds as SetDriven.
+  void SetForces(const std::vector<Eigen::Vector3d>& forces);
+  /// Elastic energy's gradient by particle j at the end of the last frame, N: the force that holds j against the tissue.
+  Eigen::Vector3d ElasticForce(int j) const;
 
  private:
   struct Parts;

@@ -7,15 +7,21 @@
 
 namespace meshless_cutting {
 
-ElasticPoints::ElasticPoints(const MaterialConfig& material, ThreadPool& pool)
-    : pool_(pool), lame_(LameConstantsOf(material)) {
-  for (int shape = 0; shape < kSupportShapes; ++shape) {
-    kernels_[shape] = SelectPointKernels(material.model, static_cast<SupportShape>(shape));
+ElasticPoints::ElasticPoints(const std::vector<MaterialConfig>& materials, double stabilisation, ThreadPool& pool)
+    : pool_(pool) {
+  for (const MaterialConfig& material : materials) {
+    lame_.push_back(LameConstantsOf(material));
+    stabilisation_.push_back(stabilisation * lame_.back().mu);
+    stiffest_.mu = std::max(stiffest_.mu, lame_.back().mu);
+    stiffest_.lambda = std::max(stiffest_.lambda, lame_.back().lambda);
+    for (int shape = 0; shape < kSupportShapes; ++shape) {
+      kernels_.push_back(SelectPointKernels(material.model, static_cast<SupportShape>(shape)));
+    }
   }
 }
 
 void ElasticPoints::TissueChanged(const Tissue& tissue) {
-  groups_.Build(tissue, lame_.mu);
+  groups_.Build(tissue, stabilisation_);
   particles_ = tissue.particle_count();
   chunk_energy_.resize(groups_.chunks.size());
   slots_.resize(std::size_t{2} * groups_.slot_count);  // the diagonal takes two
@@ -25,7 +31,7 @@ KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Field& f
   KernelArguments arguments;
   arguments.group = &groups_.groups[chunk.group];
   arguments.chunk = chunk;
-  arguments.lame = lame_;
+  arguments.lame = lame_[arguments.group->material];
   arguments.field = field.data();
   arguments.slots = slots_.data();
   arguments.slot_count = groups_.slot_count;
@@ -57,7 +63,8 @@ double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
 }
 
 void ElasticPoints::Resize(PointTangent& tangent) const {
-  for (int g = 0; g < kSupportShapes; ++g) {
+  tangent.groups.resize(groups_.groups.size());
+  for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
     tangent.groups[g].resize(static_cast<std::size_t>(groups_.groups[g].batches) * kernels_[g].tangent_size * kLanes);
   }
 }

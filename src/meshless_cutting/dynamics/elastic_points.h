@@ -14,13 +14,16 @@ namespace meshless_cutting {
 
 /// The tangent at some state, per group of points.
 struct PointTangent {
-  AlignedVector<double> groups[kSupportShapes];
+  std::vector<AlignedVector<double>> groups;
 };
 
 class ElasticPoints {
  public:
   /// `pool` must outlive this.
-  ElasticPoints(const MaterialConfig& material, ThreadPool& pool);
+  ElasticPoints(const MaterialConfig& material, ThreadPool& pool)
+      : ElasticPoints(std::vector<MaterialConfig>{material}, 1, pool) {}
+  /// One material per value of Tissue::point_material. `stabilisation`: weight of the term against zero-energy modes.
+  ElasticPoints(const std::vector<MaterialConfig>& materials, double stabilisation, ThreadPool& pool);
 
   void TissueChanged(const Tissue& tissue);
 
@@ -42,7 +45,8 @@ class ElasticPoints {
   void AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix);
 
   const PointGroups& groups() const { return groups_; }
-  const LameConstants& lame() const { return lame_; }
+  /// Of the stiffest material.
+  const LameConstants& lame() const { return stiffest_; }
 
  private:
   KernelArguments Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent);
@@ -51,8 +55,10 @@ class ElasticPoints {
   void Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const;
 
   ThreadPool& pool_;
-  LameConstants lame_;
-  PointKernels kernels_[kSupportShapes];
+  std::vector<LameConstants> lame_;  // per material
+  LameConstants stiffest_;
+  std::vector<double> stabilisation_;  // per material, Pa
+  std::vector<PointKernels> kernels_;  // per group
   PointGroups groups_;
   std::vector<double> chunk_energy_;
   Field slots_;

@@ -9,9 +9,6 @@
 namespace meshless_cutting {
 namespace {
 
-/// Weight of the stabilisation against zero-energy modes; 1 gave the smallest errors over the reference problems.
-constexpr double kStabilisation = 1.0;
-
 /// Rows of the least squares fit of an affine map to K positions; a support that is flat or thinner is fitted with the
 /// smallest gradient.
 void FillGeneral(const Tissue& tissue, int p, const Eigen::Vector3d& mean, PointGroup& group, int batch, int lane) {
@@ -145,29 +142,32 @@ void PointGroups::SortNewPoints(const Tissue& tissue) {
   std::inplace_merge(order_.begin(), order_.begin() + known, order_.end(), earlier);
 }
 
-void PointGroups::Build(const Tissue& tissue, double shear_modulus) {
+void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffness) {
   SortNewPoints(tissue);
-  int counts[kSupportShapes] = {};
+  groups.resize(stiffness.size() * kSupportShapes);
+  counts_.assign(groups.size(), 0);
+  const auto group_of = [&](int p) { return tissue.material(p) * kSupportShapes + static_cast<int>(supports_[p].shape); };
   supports_.resize(tissue.point_count());
   places.resize(tissue.point_count());
   for (int p = 0; p < tissue.point_count(); ++p) {
     supports_[p] = DescribeSupport(tissue, p);
-    ++counts[static_cast<int>(supports_[p].shape)];
+    ++counts_[group_of(p)];
   }
-  for (int shape = 0; shape < kSupportShapes; ++shape) {
-    groups[shape].shape = static_cast<SupportShape>(shape);
-    groups[shape].support = tissue.support_size;
-    groups[shape].batches = (counts[shape] + kLanes - 1) / kLanes;
-    Resize(groups[shape]);
+  for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
+    groups[g].shape = static_cast<SupportShape>(g % kSupportShapes);
+    groups[g].material = g / kSupportShapes;
+    groups[g].support = tissue.support_size;
+    groups[g].batches = (counts_[g] + kLanes - 1) / kLanes;
+    groups[g].placed = 0;
+    Resize(groups[g]);
   }
-  int next[kSupportShapes] = {};
   for (int p : order_) {
     const PointSupport& support = supports_[p];
-    const int shape = static_cast<int>(support.shape);
+    const int g = group_of(p);
     const double scale = tissue.support_size * support.h2;
-    const double stabilisation = scale > 0 ? kStabilisation * shear_modulus * tissue.point_volume[p] / scale : 0;
-    places[p] = PlaceOf(shape, next[shape]++, counts[shape]);
-    Put(tissue, p, support, stabilisation, places[p], groups[shape]);
+    const double stabilisation = scale > 0 ? stiffness[groups[g].material] * tissue.point_volume[p] / scale : 0;
+    places[p] = PlaceOf(g, groups[g].placed++, counts_[g]);
+    Put(tissue, p, support, stabilisation, places[p], groups[g]);
   }
   for (PointGroup& group : groups) FillEmptyLanes(group);
   BuildSlots(tissue.particle_count());
@@ -175,7 +175,7 @@ void PointGroups::Build(const Tissue& tissue, double shear_modulus) {
 
 void PointGroups::BuildSlots(int particles) {
   chunks.clear();
-  for (int g = 0; g < kSupportShapes; ++g) {
+  for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
     for (int begin = 0; begin < groups[g].batches; begin += kBatchesPerChunk) {
       chunks.push_back({g, begin, std::min(begin + kBatchesPerChunk, groups[g].batches), 0, 0});
     }

@@ -20,8 +20,10 @@ constexpr int kBatchesPerChunk = 32;
 /// Points of one shape. Arrays are indexed [batch][...][lane]; a lane is a point.
 struct PointGroup {
   SupportShape shape = SupportShape::kGeneral;
+  int material = 0;
   int support = 8;  // K
   int batches = 0;
+  int placed = 0;  // while it is built
 
   std::vector<int> point;             // [batch][lane] index in Tissue; -1 in filling lanes
   std::vector<int> particle;          // [batch][K][lane]; corners of a box in the order of their bits
@@ -51,7 +53,7 @@ struct PointPlace {
 /// All points, neighbours close to each other, and the way of their sums to the particles: a loop over chunks leaves a
 /// Vector4 in every slot, a loop over particles gathers them. The order of all sums is fixed here.
 struct PointGroups {
-  PointGroup groups[kSupportShapes];
+  std::vector<PointGroup> groups;  // kSupportShapes per material
   std::vector<PointPlace> places;  // per point of the tissue
   std::vector<PointChunk> chunks;
   int slot_count = 0;  // size of a buffer of slots
@@ -60,16 +62,17 @@ struct PointGroups {
   std::vector<int> slot_begin;
   std::vector<int> slots;
 
-  /// Rebuilds from `tissue`. `shear_modulus` mu in Pa: the stabilisation of a point is alpha mu V / (8 h^2) 8 / K with
-  /// alpha = 1 and h^2 = 4/3 of the mean square distance of the K rest positions from their mean (h of a cube of edge h).
+  /// Rebuilds from `tissue`. `stiffness` per material: alpha mu, Pa. The stabilisation of a point is alpha mu V / (8 h^2) 8 / K with
+  /// h^2 = 4/3 of the mean square distance of the K rest positions from their mean (h of a cube of edge h).
   /// Allocates only to grow. Points that were there before keep their order; a tissue with fewer points is a new one.
-  void Build(const Tissue& tissue, double shear_modulus);
+  void Build(const Tissue& tissue, const std::vector<double>& stiffness);
 
  private:
   void SortNewPoints(const Tissue& tissue);
   void BuildSlots(int particles);
 
   std::vector<PointSupport> supports_;   // scratch
+  std::vector<int> counts_;              // scratch, per group
   std::vector<int> order_;               // points along a space-filling curve
   std::vector<std::uint64_t> curve_;     // place of each point on it
   std::vector<int> slot_of_, slot_particle_;

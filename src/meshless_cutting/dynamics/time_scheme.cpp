@@ -1,9 +1,17 @@
 #include "dynamics/time_scheme.h"
 
 namespace meshless_cutting {
+namespace {
+
+/// s. Longer than the slowest mode of any tissue, so that inertia is left out but for what keeps a loose piece defined.
+constexpr double kStaticStep = 10;
+
+}  // namespace
 
 TimeScheme::TimeScheme(Integrator integrator, double time_step_s) : dt_(time_step_s) {
-  if (integrator == Integrator::kImplicitEuler) {
+  is_static_ = integrator == Integrator::kQuasiStatic;
+  if (is_static_) dt_ = kStaticStep;
+  if (is_static_ || integrator == Integrator::kImplicitEuler) {
     alpha_m_ = alpha_f_ = predict_ = 0;
     beta_ = gamma_ = 1;
     return;

@@ -10,6 +10,7 @@ namespace meshless_cutting {
 /// and the balance M ((1 - alpha_m) a1 + alpha_m a0) = f(y) at the stage y = (1 - alpha_f) x1 + alpha_f x0.
 /// Chung and Hulbert 1993 (generalised-alpha): second order, spectral radius rho at infinite frequency. Since f is taken at
 /// y, not averaged, y minimises inertia() / 2 |y - target|_M^2 + Phi(y), f = -Phi', for conservative forces: what a line search needs.
+/// Integrator::kQuasiStatic is implicit Euler from rest with a step so long that inertia does not matter: each frame ends in balance.
 class TimeScheme {
  public:
   TimeScheme(Integrator integrator, double time_step_s);
@@ -21,6 +22,7 @@ class TimeScheme {
   double rate() const { return gamma_ / (beta_ * dt_); }  // 1/s: velocity at the stage = rate (y - Still)
   double time_step_s() const { return dt_; }
   double stage() const { return 1 - alpha_f_; }           // the stage's place in the step
+  bool is_static() const { return is_static_; }           // velocities mean nothing
 
   // One particle, any vector type. Start of the step: x0, v0, a0.
   template <class V>
@@ -57,6 +59,7 @@ class TimeScheme {
 
  private:
   double dt_, alpha_m_, alpha_f_, beta_, gamma_, predict_;
+  bool is_static_ = false;
 };
 
 }  // namespace meshless_cutting

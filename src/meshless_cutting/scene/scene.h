@@ -15,6 +15,30 @@ namespace meshless_cutting {
 struct Box {
   Eigen::Vector3d min = Eigen::Vector3d::Zero();  // m
   Eigen::Vector3d max = Eigen::Vector3d::Zero();  // m
+  std::string name = {};                          // for reports; may be empty
+
+  /// Whether X is inside or within `slack` (m) of it.
+  bool Holds(const Eigen::Vector3d& X, double slack) const {
+    return (X.array() >= min.array() - slack).all() && (X.array() <= max.array() + slack).all();
+  }
+};
+
+/// A quantity over simulated time: through the given values, the first before and the last after them.
+template <class T>
+struct TimeTable {
+  std::vector<double> time_s;  // rising
+  std::vector<T> values;       // one per time, at least one
+  bool smooth = false;         // come to rest at every value (cubic); else straight lines
+
+  T At(double time) const {
+    std::size_t next = 0;
+    while (next < time_s.size() && time_s[next] <= time) ++next;
+    if (next == 0) return values.front();
+    if (next == time_s.size()) return values.back();
+    double share = (time - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
+    if (smooth) share *= share * (3 - 2 * share);
+    return (1 - share) * values[next - 1] + share * values[next];
+  }
 };
 
 enum class MaterialModel { kStableNeoHookean, kNeoHookean, kStVenantKirchhoff, kLinear };
@@ -26,11 +50,61 @@ struct MaterialConfig {
   double density_kg_m3 = 0;
 };
 
+/// Shapes that need no mesh file. All in the object frame.
+struct CylinderPrimitive {
+  Eigen::Vector3d start = Eigen::Vector3d::Zero(), end = Eigen::Vector3d::UnitZ();  // m, centres of the two faces
+  double radius = 0;                                                                // m
+};
+/// The outline, a simple polygon in the two axes that follow `axis` (x: y, z; y: z, x; z: x, y), drawn out along it.
+struct PrismPrimitive {
+  int axis = 2;
+  std::vector<Eigen::Vector2d> outline;  // m
+  double from = 0, to = 0;               // m, along the axis
+};
+using Primitive = std::variant<Box, CylinderPrimitive, PrismPrimitive>;
+
+/// Particles in a box are held and moved: X goes to c + R(angle) (X - c) + displacement, in the object frame.
+struct PrescribedRegion {
+  Box box;
+  TimeTable<Eigen::Vector3d> displacement_m;
+  Eigen::Vector3d axis_point = Eigen::Vector3d::Zero();  // c, m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       // unit
+  TimeTable<double> angle_rad;
+};
+
+/// A dead load on the skin that lies in a box: its direction and size do not follow the tissue.
+struct LoadRegion {
+  Box box;
+  bool is_traction = false;         // values are Pa of area at rest, else N in total
+  TimeTable<Eigen::Vector3d> load;  // object frame
+};
+
+/// Another material in a part of the object. Where regions overlap the last one counts.
+struct MaterialRegion {
+  std::optional<Box> box;
+  std::filesystem::path mesh;  // or inside this, scaled as the object's
+  MaterialConfig material;
+};
+
+/// A cut that is there from the start: the parallelogram corner + u edges[0] + v edges[1], object frame, m.
+struct Slit {
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();
+  Eigen::Vector3d edges[2] = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
+};
+
+/// A point of the tissue whose displacement is recorded.
+struct ProbeConfig {
+  std::string name;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, at rest, object frame
+  Eigen::Vector3d side = Eigen::Vector3d::Zero();      // where it lies on a cut: it belongs to the lip on this side
+};
+
 /// The tissue. The *object frame* is the mesh's own frame after scaling; rest positions, `fixed` and everything that is
 /// called "rest" are in it. `T_WO` places the object frame in the scene frame W at the start.
 struct ObjectConfig {
   std::string name;
-  std::filesystem::path mesh;  // resolved, absolute
+  std::filesystem::path mesh;  // resolved, absolute; empty where there is a primitive
+  std::optional<Primitive> primitive;
   double scale = 1;            // mesh units to metres
   Eigen::Isometry3d T_WO = Eigen::Isometry3d::Identity();
   double cell_size_m = 0;     // background grid
@@ -38,6 +112,11 @@ struct ObjectConfig {
   MaterialConfig material;
   std::vector<Box> fixed;             // object frame; empty: nothing is held
   double support_radius_cells = 0.9;  // MLS support about the centre of a cell
+  double stabilisation = 1;           // weight of the term against zero-energy modes
+  std::vector<PrescribedRegion> prescribed;
+  std::vector<LoadRegion> loads;
+  std::vector<MaterialRegion> regions;
+  std::vector<Slit> slits;
 };
 
 struct PlaneObstacle {
@@ -58,7 +137,7 @@ struct DampingConfig {
   double stiffness_s = 0;  // Rayleigh, proportional to stiffness
 };
 
-enum class Integrator { kGeneralizedAlpha, kImplicitEuler };
+enum class Integrator { kGeneralizedAlpha, kImplicitEuler, kQuasiStatic };
 
 struct SolverConfig {
   Integrator integrator = Integrator::kGeneralizedAlpha;
@@ -107,6 +186,7 @@ struct Scene : SourceFile {
   std::vector<ObstacleConfig> obstacles;        // scene frame
   std::optional<DampingConfig> damping;
   std::vector<ToolConfig> tools;
+  std::vector<ProbeConfig> probes;
   SolverConfig solver;
 };
 

@@ -52,6 +52,24 @@ std::string PackageName(const fs::path& package_xml) {
   return first == std::string::npos ? "" : name.substr(first, name.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+/// Rows and columns of reports go by these names.
+void CheckNames(const Scene& scene) {
+  std::set<std::string> regions, probes;
+  const auto check = [&](std::set<std::string>& names, const std::string& name, const std::string& key) {
+    if (name.empty() || names.insert(name).second) return;
+    throw std::runtime_error(SceneMessage(scene, key + ".name", name, "expected a name that is not taken yet"));
+  };
+  for (std::size_t i = 0; i < scene.object.fixed.size(); ++i) {
+    check(regions, scene.object.fixed[i].name, "object.fixed[" + std::to_string(i) + "]");
+  }
+  for (std::size_t i = 0; i < scene.object.prescribed.size(); ++i) {
+    check(regions, scene.object.prescribed[i].box.name, "object.prescribed[" + std::to_string(i) + "]");
+  }
+  for (std::size_t i = 0; i < scene.probes.size(); ++i) {
+    check(probes, scene.probes[i].name, "probes[" + std::to_string(i) + "]");
+  }
+}
+
 }  // namespace
 
 PackageResolver FindPackageAbove(const fs::path& start) {
@@ -72,12 +90,17 @@ Scene ReadScene(const fs::path& file, const PackageResolver& resolver) {
   const YAML::Node tree =
       LoadYaml(file, "a scene file (YAML) that starts with `scene_version: 1`, e.g. launch/liver.yaml", &scene);
   const YamlSection top(YamlValue(tree, "", &scene), {"scene_version", "frame", "time_step_s", "object", "gravity_m_s2",
-                                                      "obstacles", "damping", "tools", "solver"});
+                                                      "obstacles", "damping", "tools", "probes", "solver"});
   top.Get("scene_version").Integer(1, 1);
   if (const auto frame = top.Find("frame")) scene.frame = ReadFrameId(*frame);
   if (const auto step = top.Find("time_step_s")) scene.time_step_s = step->Number(NumberRange::Closed(0.0005, 0.1));
   scene.object = ReadObject(top.Get("object"));
-  scene.object.mesh = ResolveMesh(YamlSection(top.Get("object"), ObjectKeys()).Get("mesh"), file, resolver);
+  const YamlSection object(top.Get("object"), ObjectKeys());
+  if (!scene.object.primitive) scene.object.mesh = ResolveMesh(object.Get("mesh"), file, resolver);
+  for (std::size_t i = 0; i < scene.object.regions.size(); ++i) {
+    const YamlSection region(object.Get("regions").List()[i], MaterialRegionKeys());
+    if (const auto mesh = region.Find("mesh")) scene.object.regions[i].mesh = ResolveMesh(*mesh, file, resolver);
+  }
   if (const auto gravity = top.Find("gravity_m_s2")) scene.gravity_m_s2 = gravity->Vector3();
   if (const auto obstacles = top.Find("obstacles")) {
     for (const YamlValue& item : obstacles->List()) scene.obstacles.push_back(ReadObstacle(item));
@@ -93,6 +116,10 @@ Scene ReadScene(const fs::path& file, const PackageResolver& resolver) {
       }
     }
   }
+  if (const auto probes = top.Find("probes")) {
+    for (const YamlValue& item : probes->List()) scene.probes.push_back(ReadProbe(item));
+  }
+  CheckNames(scene);
   if (const auto solver = top.Find("solver")) scene.solver = ReadSolver(*solver);
   return scene;
 }

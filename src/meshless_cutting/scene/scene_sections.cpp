@@ -9,6 +9,19 @@ namespace {
 // Physical limits wide enough for every tissue and organ; outside of them a unit is wrong.
 const NumberRange kSize = {1e-5, 10, false, false};  // m
 
+double ReadFriction(const YamlSection& section) {
+  const auto friction = section.Find("friction");
+  return friction ? friction->Number(NumberRange::Closed(0, 10), "Coulomb's coefficient") : 0;
+}
+
+}  // namespace
+
+std::vector<std::string> ObjectKeys() {
+  return {"name",     "mesh",  "primitive",  "scale", "pose",    "cell_size_m", "lattice_size_m",
+          "material", "fixed", "prescribed", "loads", "regions", "slits",       "support_radius_cells",
+          "stabilisation"};
+}
+
 MaterialConfig ReadMaterial(const YamlValue& value) {
   const YamlSection section(value, {"model", "youngs_modulus_pa", "poisson_ratio", "density_kg_m3"});
   MaterialConfig material;
@@ -29,18 +42,6 @@ MaterialConfig ReadMaterial(const YamlValue& value) {
   material.density_kg_m3 =
       section.Get("density_kg_m3").Number({1, 1e5, false, false}, "in kg/m^3: tissue has about 1050");
   return material;
-}
-
-double ReadFriction(const YamlSection& section) {
-  const auto friction = section.Find("friction");
-  return friction ? friction->Number(NumberRange::Closed(0, 10), "Coulomb's coefficient") : 0;
-}
-
-}  // namespace
-
-std::vector<std::string> ObjectKeys() {
-  return {
-      "name", "mesh", "scale", "pose", "cell_size_m", "lattice_size_m", "material", "fixed", "support_radius_cells"};
 }
 
 std::string ReadFrameId(const YamlValue& value) {
@@ -92,12 +93,29 @@ ObjectConfig ReadObject(const YamlValue& value) {
   }
   object.material = ReadMaterial(section.Get("material"));
   if (const auto fixed = section.Find("fixed")) {
-    for (const YamlValue& item : fixed->List()) {
-      object.fixed.push_back(ReadBox(YamlSection(item, {"box_m"}).Get("box_m")));
-    }
+    for (const YamlValue& item : fixed->List()) object.fixed.push_back(ReadFixed(item));
+  }
+  if (const auto list = section.Find("prescribed")) {
+    for (const YamlValue& item : list->List()) object.prescribed.push_back(ReadPrescribed(item));
+  }
+  if (const auto list = section.Find("loads")) {
+    for (const YamlValue& item : list->List()) object.loads.push_back(ReadLoad(item));
+  }
+  if (const auto list = section.Find("regions")) {
+    for (const YamlValue& item : list->List()) object.regions.push_back(ReadMaterialRegion(item));
+  }
+  if (const auto list = section.Find("slits")) {
+    for (const YamlValue& item : list->List()) object.slits.push_back(ReadSlit(item));
   }
   if (const auto support = section.Find("support_radius_cells")) {
     object.support_radius_cells = support->Number({0.87, 2, false, false}, "0.9 takes the 8 particles around a cell");
+  }
+  if (const auto stabilisation = section.Find("stabilisation")) {
+    object.stabilisation = stabilisation->Number(NumberRange::Closed(0.01, 10), "1 gives the smallest errors");
+  }
+  if (section.ExactlyOneOf({"mesh", "primitive"}) == "primitive") {
+    if (const auto scale = section.Find("scale")) scale->Fail("no scale beside a primitive, whose sizes are metres");
+    object.primitive = ReadPrimitive(section.Get("primitive"));
   }
   return object;
 }
@@ -144,9 +162,12 @@ SolverConfig ReadSolver(const YamlValue& value) {
   SolverConfig solver;
   if (const auto integrator = section.Find("integrator")) {
     const std::string name = integrator->Text();
-    if (name != "generalized_alpha" && name != "implicit_euler")
-      integrator->Fail("generalized_alpha or implicit_euler");
-    solver.integrator = name == "implicit_euler" ? Integrator::kImplicitEuler : Integrator::kGeneralizedAlpha;
+    const std::map<std::string, Integrator> integrators = {{"generalized_alpha", Integrator::kGeneralizedAlpha},
+                                                           {"implicit_euler", Integrator::kImplicitEuler},
+                                                           {"quasi_static", Integrator::kQuasiStatic}};
+    const auto found = integrators.find(name);
+    if (found == integrators.end()) integrator->Fail("generalized_alpha, implicit_euler or quasi_static");
+    solver.integrator = found->second;
   }
   if (const auto tolerance = section.Find("relative_tolerance")) {
     solver.relative_tolerance = tolerance->Number(NumberRange::Open(0, 1));

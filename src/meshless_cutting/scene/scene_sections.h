@@ -16,6 +16,17 @@ std::vector<std::string> ObjectKeys();
 ObjectConfig ReadObject(const YamlValue& value);
 ObstacleConfig ReadObstacle(const YamlValue& value);
 DampingConfig ReadDamping(const YamlValue& value);
+MaterialConfig ReadMaterial(const YamlValue& value);
+ProbeConfig ReadProbe(const YamlValue& value);
+// Entries of `object`, see region_sections.cpp.
+Primitive ReadPrimitive(const YamlValue& value);
+Box ReadFixed(const YamlValue& value);
+PrescribedRegion ReadPrescribed(const YamlValue& value);
+LoadRegion ReadLoad(const YamlValue& value);
+/// But for its mesh, as with ReadObject.
+MaterialRegion ReadMaterialRegion(const YamlValue& value);
+std::vector<std::string> MaterialRegionKeys();
+Slit ReadSlit(const YamlValue& value);
 ToolConfig ReadTool(const YamlValue& value);
 SolverConfig ReadSolver(const YamlValue& value);
 

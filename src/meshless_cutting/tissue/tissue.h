@@ -19,10 +19,13 @@ struct Tissue {
   std::vector<std::uint8_t> particle_fixed;    // 1: held where it is
 
   // Integration points, p; K entries per point in the two arrays of links.
+  std::vector<int> point_material;              // 0, or 1 + region; empty: all 0
   std::vector<double> point_volume;             // V_p, m^3, at rest
   std::vector<Eigen::Vector3d> point_rest;      // X_p, m, object frame: centroid of the material of the point
   std::vector<int> point_particles;             // K per point
   std::vector<Eigen::Vector3d> point_gradients;  // K per point, dphi/dX at X_p, 1/m
+
+  int material(int p) const { return point_material.empty() ? 0 : point_material[p]; }
 
   std::uint64_t version = 0;  // +1 whenever anything above changed
 
