@@ -56,6 +56,7 @@ TEST(DeadLoad, KeepsItsForceAndTorqueAcrossACutThroughItsFace) {
   EXPECT_NEAR(simulation.reactions()[0].torque_nm.y(), -0.01 * 0.08, 2e-6);  // arm of the bent bar: second order
 }
 
+// Probes on the face of a region: their weights reach into the cell behind by some per cent of the strain there.
 TEST(PrescribedRegion, MovesAndTurnsAndReportsBalancedReactions) {
   Scene scene = BarScene(0.3);
   scene.object.material.model = MaterialModel::kStableNeoHookean;
@@ -70,9 +71,9 @@ TEST(PrescribedRegion, MovesAndTurnsAndReportsBalancedReactions) {
   Simulation simulation(scene);
   for (int n = 0; n < 5; ++n) simulation.Step();
   EXPECT_EQ(simulation.statistics().status & kStepFrozen, 0u);
-  EXPECT_LT((simulation.probes()[0].displacement - Eigen::Vector3d(0.01, 0, 0.002)).norm(), 1e-12);
+  EXPECT_LT((simulation.probes()[0].displacement - Eigen::Vector3d(0.01, 0, 0.002)).norm(), 5e-6);
   const Eigen::Vector3d corner(0.01, 0.01 * (std::cos(1.0) - 1), 0.002 + 0.01 * std::sin(1.0));
-  EXPECT_LT((simulation.probes()[2].displacement - corner).norm(), 1e-12);
+  EXPECT_LT((simulation.probes()[2].displacement - corner).norm(), 5e-6);
   const Reaction &root = simulation.reactions()[0], &held = simulation.reactions()[1];
   EXPECT_LT((root.force_n + held.force_n).norm(), 1e-6 * held.force_n.norm());
   const Eigen::Vector3d moment = held.torque_nm + (held.about - root.about).cross(held.force_n);
@@ -93,7 +94,7 @@ TEST(PrescribedRegion, MovesInDynamicScenesToo) {
     scene.object.prescribed = {grip};
     Simulation simulation(scene);
     for (int n = 0; n < 240; ++n) simulation.Step();
-    EXPECT_LT((simulation.probes()[0].displacement - Eigen::Vector3d(0.02, 0, 0)).norm(), 1e-12);
+    EXPECT_LT((simulation.probes()[0].displacement - Eigen::Vector3d(0.02, 0, 0)).norm(), 5e-6);
     EXPECT_NEAR(simulation.probes()[1].displacement.x(), 0.01, 2e-4);
     EXPECT_LT(simulation.statistics().kinetic_j, 1e-9);
     EXPECT_NEAR(simulation.reactions()[0].force_n.x(), -simulation.reactions()[1].force_n.x(), 1e-3);
