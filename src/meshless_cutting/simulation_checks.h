@@ -17,7 +17,7 @@ std::string CheckSurfaceClosed(const Surface& surface);
 double RestVolume(const Surface& surface);
 
 /// Fragments of the surface = connected groups of the graph = pieces of the physics; volumes of the points add up to
-/// the enclosed volume; mass is density times volume.
+/// the enclosed volume, and of each fragment but for what cuts that meet redraw; mass is density times volume.
 std::string CheckPieces(const SoftBody& body);
 
 /// No integration point sees a particle across a cut: the points that share a particle are joined through material

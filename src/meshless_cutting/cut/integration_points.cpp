@@ -7,6 +7,8 @@
 namespace meshless_cutting {
 namespace {
 
+constexpr std::uint8_t kAllVertices = 0xf;
+
 void SortUnique(std::vector<int>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -41,8 +43,10 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
     AddCellVolumes(
         grid, {lattice.vertices[v[0]], lattice.vertices[v[1]], lattice.vertices[v[2]], lattice.vertices[v[3]]}, parts);
     MergeParts(parts, [&](const CellVolume& part) { return part.volume < sliver; });
-    AddChips(static_cast<int>(t), v[0], parts);
-    for (const CellVolume& part : parts) tetrahedron_cells_.items.push_back(part.cell);
+    for (const CellVolume& part : parts) {
+      cells_[part.cell].chips.push_back({static_cast<int>(t), kAllVertices, part.volume, part.moment});
+      tetrahedron_cells_.items.push_back(part.cell);
+    }
     tetrahedron_cells_.offsets.push_back(static_cast<int>(tetrahedron_cells_.items.size()));
   }
   for (int cell = 0; cell < grid.cell_count(); ++cell) Regroup(cell);
@@ -53,9 +57,10 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
   Relink(all);
 }
 
-void IntegrationPoints::AddChips(int tetrahedron, int anchor, const std::vector<CellVolume>& parts) {
-  for (const CellVolume& part : parts)
-    cells_[part.cell].chips.push_back({tetrahedron, anchor, part.volume, part.moment});
+int IntegrationPoints::AnchorOf(const Chip& chip) const {
+  int i = 0;
+  while (!(chip.piece >> i & 1u)) ++i;
+  return lattice_->tetrahedra[chip.tetrahedron][i];
 }
 
 void IntegrationPoints::Regroup(int cell_index) {
@@ -73,14 +78,13 @@ void IntegrationPoints::Regroup(int cell_index) {
     vertices.push_back(v);
   };
   for (const Chip& chip : cell.chips) {
-    const std::array<int, 4>& t = lattice_->tetrahedra[chip.tetrahedron];
-    const TetrahedronPieces& pieces = PiecesOf(graph_->CutMask(chip.tetrahedron));
-    const int piece = pieces.piece[std::find(t.begin(), t.end(), chip.anchor) - t.begin()];
-    add(chip.anchor);
+    const int anchor = AnchorOf(chip);
+    add(anchor);
     for (int i = 0; i < 4; ++i) {
-      if (pieces.piece[i] != piece) continue;
-      add(t[i]);
-      const int a = find(chip.anchor), b = find(t[i]);
+      if (!(chip.piece >> i & 1u)) continue;
+      const int v = lattice_->tetrahedra[chip.tetrahedron][i];
+      add(v);
+      const int a = find(anchor), b = find(v);
       root_[std::max(a, b)] = std::min(a, b);
     }
   }
@@ -89,7 +93,7 @@ void IntegrationPoints::Regroup(int cell_index) {
   std::map<int, IntegrationPoint> groups;  // by root, so in the order of their lowest vertex
   for (int v : vertices) groups[find(v)].vertices.push_back(v);
   for (const Chip& chip : cell.chips) {
-    IntegrationPoint& group = groups[find(chip.anchor)];
+    IntegrationPoint& group = groups[find(AnchorOf(chip))];
     group.volume += chip.volume;
     group.centroid += chip.moment;
   }
@@ -170,46 +174,73 @@ void IntegrationPoints::ClipPieces(const CutSurface& surface, int tetrahedron,
       if (x[1] != x[0] && x[2] != x[0] && x[3] != x[0]) AddCellVolumes(*grid_, x, parts[piece]);
     }
   }
-  // Each cell stays with at least one piece, the one with most material there.
-  const double sliver = kSliverShare * grid_->spacing().prod();
-  const int *begin = tetrahedron_cells_.begin(tetrahedron), *end = tetrahedron_cells_.end(tetrahedron);
-  std::array<std::vector<int>, 4> keep;
-  for (const int* cell = begin; cell != end; ++cell) {
-    int best = -1;
-    double most = 0;
-    for (int piece = 0; piece < pieces.count; ++piece)
-      for (const CellVolume& part : parts[piece])
-        if (part.cell == *cell && part.volume > most) best = piece, most = part.volume;
-    if (best >= 0) keep[best].push_back(*cell);
+}
+
+void IntegrationPoints::SplitChip(int cell, const Chip& chip, const std::array<std::vector<CellVolume>, 4>& parts) {
+  const TetrahedronPieces& pieces = PiecesOf(graph_->CutMask(chip.tetrahedron));
+  // What is drawn in this cell of each piece that the chip's piece fell into.
+  struct Child {
+    std::uint8_t piece = 0;
+    double volume = 0;
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  };
+  std::array<Child, 4> children;
+  for (int i = 0; i < 4; ++i)
+    if (chip.piece >> i & 1u) children[pieces.piece[i]].piece |= static_cast<std::uint8_t>(1u << i);
+  int largest = -1;
+  for (int k = 0; k < 4; ++k) {
+    if (children[k].piece == 0) continue;
+    for (const CellVolume& part : parts[k])
+      if (part.cell == cell) {
+        children[k].volume = part.volume;
+        children[k].moment = part.moment;
+      }
+    if (largest < 0 || children[k].volume > children[largest].volume) largest = k;
   }
-  for (int piece = 0; piece < pieces.count; ++piece)
-    MergeParts(parts[piece], [&](const CellVolume& part) {
-      if (std::find(begin, end, part.cell) == end) return true;
-      return part.volume < sliver && std::find(keep[piece].begin(), keep[piece].end(), part.cell) == keep[piece].end();
-    });
+  // The largest always keeps some; slivers go to it.
+  const double sliver = kSliverShare * grid_->spacing().prod();
+  double drawn = 0;
+  for (Child& child : children) {
+    if (&child != &children[largest] && child.volume < sliver) child.piece = 0;
+    if (child.piece != 0) drawn += child.volume;
+  }
+  for (const Child& child : children) {
+    if (child.piece == 0) continue;
+    Chip part = chip;
+    part.piece = child.piece;
+    if (drawn >= sliver) {
+      part.volume = chip.volume * (child.volume / drawn);
+      part.moment = child.moment * (part.volume / child.volume);
+    }
+    cells_[cell].chips.push_back(part);
+  }
 }
 
 const std::vector<int>& IntegrationPoints::Update(const CutSurface& surface, const std::vector<int>& tetrahedra) {
   changed_.clear();
   std::vector<int> cells;
-  for (int t : tetrahedra) cells.insert(cells.end(), tetrahedron_cells_.begin(t), tetrahedron_cells_.end(t));
+  for (int t : tetrahedra) {
+    cells.insert(cells.end(), tetrahedron_cells_.begin(t), tetrahedron_cells_.end(t));
+    is_clipped_[t] = 1;
+  }
   SortUnique(cells);
-  for (int t : tetrahedra) is_clipped_[t] = 1;
+  std::vector<std::pair<int, Chip>> clipped;  // with their cells
   for (int cell : cells) {
     std::vector<Chip>& chips = cells_[cell].chips;
-    chips.erase(
-        std::remove_if(chips.begin(), chips.end(), [&](const Chip& chip) { return is_clipped_[chip.tetrahedron]; }),
-        chips.end());
+    const auto kept = std::stable_partition(chips.begin(), chips.end(),
+                                            [&](const Chip& chip) { return !is_clipped_[chip.tetrahedron]; });
+    for (auto chip = kept; chip != chips.end(); ++chip) clipped.emplace_back(cell, *chip);
+    chips.erase(kept, chips.end());
   }
+  std::stable_sort(clipped.begin(), clipped.end(),
+                   [](const auto& a, const auto& b) { return a.second.tetrahedron < b.second.tetrahedron; });
   std::array<std::vector<CellVolume>, 4> parts;
-  for (int t : tetrahedra) {
-    is_clipped_[t] = 0;
-    ClipPieces(surface, t, parts);
-    const TetrahedronPieces& pieces = PiecesOf(graph_->CutMask(t));
-    for (int i = 0; i < 4; ++i)  // the first vertex of each piece is its anchor
-      if (std::find(pieces.piece.begin(), pieces.piece.begin() + i, pieces.piece[i]) == pieces.piece.begin() + i)
-        AddChips(t, lattice_->tetrahedra[t][i], parts[pieces.piece[i]]);
+  int drawn = -1;  // tetrahedron that `parts` are of
+  for (const auto& [cell, chip] : clipped) {
+    if (std::exchange(drawn, chip.tetrahedron) != chip.tetrahedron) ClipPieces(surface, chip.tetrahedron, parts);
+    SplitChip(cell, chip, parts);
   }
+  for (int t : tetrahedra) is_clipped_[t] = 0;
   for (int cell : cells) Regroup(cell);
   SortUnique(changed_);
   neighbours_.resize(points_.size());

@@ -12,8 +12,8 @@
 
 namespace meshless_cutting {
 
-/// The material of one point: volume and centroid are those of the pieces themselves, clipped by the cell, so a cut
-/// keeps the sum of both to rounding.
+/// The material of one point. A cut shares volume among its parts in proportion to what is drawn of them, so mass,
+/// momentum and angular momentum are kept to rounding.
 struct IntegrationPoint {
   int cell = -1;
   double volume = 0;                                   // m^3, at rest
@@ -40,20 +40,23 @@ class IntegrationPoints {
   const std::vector<int>& Neighbours(int p) const { return neighbours_[p]; }
 
  private:
-  struct Chip {  // what a piece of a tetrahedron has in a cell
+  /// What a piece of a tetrahedron has in a cell. A chip is made at load and only ever split, as its piece is: what a
+  /// later cut redraws between pieces that were apart before moves no mass between them.
+  struct Chip {
     int tetrahedron;
-    int anchor;  // a lattice vertex of the piece
-    double volume;
-    Eigen::Vector3d moment;
+    std::uint8_t piece;      // bit i: vertex i of the tetrahedron belongs to the piece
+    double volume;           // m^3
+    Eigen::Vector3d moment;  // volume times centroid, m^4
   };
   struct Cell {
     std::vector<Chip> chips;
     std::vector<int> points;
   };
-  /// Material of all pieces of a tetrahedron, by piece and cell. A cell that the uncut tetrahedron has material in
-  /// keeps some.
+  int AnchorOf(const Chip& chip) const;  // its first lattice vertex
+  /// What is drawn of each piece of a tetrahedron, by cell.
   void ClipPieces(const CutSurface& surface, int tetrahedron, std::array<std::vector<CellVolume>, 4>& parts) const;
-  void AddChips(int tetrahedron, int anchor, const std::vector<CellVolume>& parts);
+  /// Shares a chip among the pieces that its piece fell into, in proportion to what is drawn of them.
+  void SplitChip(int cell, const Chip& chip, const std::array<std::vector<CellVolume>, 4>& parts);
   void Regroup(int cell);
   void Relink(const std::vector<int>& points);
 
