@@ -43,7 +43,10 @@ std::string CheckSurfaceClosed(const Surface& surface) {
   if (surface.region.size() != surface.triangles.size() || surface.fragment.size() != surface.triangles.size())
     return "regions or fragments do not fit the triangles";
   if (surface.rest_positions.size() != surface.positions.size()) return "positions do not fit the rest positions";
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  // Directed edges as numbers, so that sorting finds doubles and opposites.
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * surface.triangles.size());
+  auto directed = [](std::uint64_t from, std::uint64_t to) { return from << 32 | to; };
   for (size_t i = 0; i < surface.triangles.size(); ++i) {
     const auto& t = surface.triangles[i];
     for (std::uint32_t v : t)
@@ -51,12 +54,15 @@ std::string CheckSurfaceClosed(const Surface& surface) {
     const Eigen::Vector3d& a = surface.rest_positions[t[0]];
     const Eigen::Vector3d b = surface.rest_positions[t[1]] - a, c = surface.rest_positions[t[2]] - a;
     if (!(b.cross(c).norm() > 1e-9 * std::max(b.squaredNorm(), c.squaredNorm()))) return At("degenerate triangle", i);
-    for (int k = 0; k < 3; ++k)
-      if (++edges[{t[k], t[(k + 1) % 3]}] > 1) return At("an edge has two triangles on one side at triangle", i);
+    for (int k = 0; k < 3; ++k) edges.push_back(directed(t[k], t[(k + 1) % 3]));
   }
-  for (const auto& [edge, count] : edges)
-    if (edges.find({edge.second, edge.first}) == edges.end())
-      return "open edge " + std::to_string(edge.first) + "-" + std::to_string(edge.second);
+  std::sort(edges.begin(), edges.end());
+  auto name = [](std::uint64_t edge) { return std::to_string(edge >> 32) + "-" + std::to_string(edge & 0xffffffffu); };
+  if (const auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end())
+    return "an edge has two triangles on one side: " + name(*twice);
+  for (std::uint64_t edge : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), directed(edge & 0xffffffffu, edge >> 32)))
+      return "open edge " + name(edge);
   return {};
 }
 
