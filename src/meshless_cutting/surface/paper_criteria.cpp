@@ -25,7 +25,12 @@ void PaperCriteria::Count(const Eigen::Vector3d& X, const std::vector<int>& own,
           near.emplace_back((points_->points()[p].centroid - X).squaredNorm(), p);
   std::sort(near.begin(), near.end());
 
-  auto is_across = [&](auto at) { return !std::binary_search(own.begin(), own.end(), at->second); };
+  auto has = [](const std::vector<int>& sorted, int p) { return std::binary_search(sorted.begin(), sorted.end(), p); };
+  auto is_across = [&](auto entry) {
+    const int p = entry->second;
+    return !has(own, p) &&
+           std::none_of(own.begin(), own.end(), [&](int q) { return has(points_->Neighbours(q), p); });
+  };
   ++counts_.mapped;
   auto at = near.begin();
   counts_.nearest += is_across(at);

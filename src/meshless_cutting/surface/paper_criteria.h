@@ -11,8 +11,8 @@
 
 namespace meshless_cutting {
 
-/// Choices since counting began, and how many of them fall on a point that the graph does not join to the vertex, with
-/// one criterion after the other taken into account.
+/// Choices since counting began, and how many of them fall across a cut or a fold, with one criterion after the other
+/// taken into account. Across: neither a point of the vertex nor one that has material in common with such a point.
 struct PaperCriteriaCounts {
   std::uint64_t mapped = 0;
   std::uint64_t nearest = 0;          // distance alone
