@@ -349,6 +349,7 @@ const Surface& Simulation::surface() const { return parts_->body->surface(); }
 const std::vector<StrokeEvent>& Simulation::events() const { return parts_->events; }
 const FrameStatistics& Simulation::statistics() const { return parts_->statistics; }
 const BuiltParts& Simulation::parts() const { return parts_->built; }
+const std::string& Simulation::solver_summary() const { return parts_->dynamics->solver_summary(); }
 const std::vector<ProbeReading>& Simulation::probes() const {
   static const std::vector<ProbeReading> kNone;
   return parts_->probes ? parts_->probes->Read(parts_->body->state()) : kNone;

@@ -71,6 +71,8 @@ class Simulation {
   const std::vector<StrokeEvent>& events() const;
   const FrameStatistics& statistics() const;
   const BuiltParts& parts() const;
+  /// How the dynamics steps, and why so: one line for a log.
+  const std::string& solver_summary() const;
   /// Readings of the scene's probes, in its order. Computed when asked for.
   const std::vector<ProbeReading>& probes() const;
   /// With what the fixed and then the prescribed regions are held. Computed when asked for; a load or Reset() is no frame.

@@ -1,6 +1,8 @@
 // Loops over points, in ns per point, and whole steps. --benchmark_filter=Step for the latter.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
+
 #include "dynamics/dynamics.h"
 #include "dynamics/elastic_points.h"
 #include "support/box_tissue.h"
@@ -22,8 +24,10 @@ constexpr MaterialConfig kSoft{MaterialModel::kStableNeoHookean, 5e3, 0.45, 1050
 
 struct Loop {
   explicit Loop(const benchmark::State& state)
-      : tissue(MakeBoxTissue(Cube(static_cast<int>(state.range(0))))),
-        pool(static_cast<int>(state.range(1))),
+      : Loop(static_cast<int>(state.range(0)), static_cast<int>(state.range(1))) {}
+  Loop(int cells, int threads)
+      : tissue(MakeBoxTissue(Cube(cells))),
+        pool(threads),
         points(kSoft, pool),
         x(tissue.particle_count()),
         y(tissue.particle_count()) {
@@ -33,6 +37,7 @@ struct Loop {
     points.Linearise(x, tangent);
   }
   void Report(benchmark::State& state) const {
+    state.SetComplexityN(tissue.point_count());
     state.counters["points"] = tissue.point_count();
     state.counters["s_per_point"] =
         benchmark::Counter(static_cast<double>(tissue.point_count()),
@@ -96,11 +101,71 @@ void Step(benchmark::State& state) {
   state.counters["linear"] = static_cast<double>(linear) / frames;
 }
 
-// Cells along an edge, threads[, at rest]: 1k, 3.4k, 10k points.
-BENCHMARK(Force)->ArgsProduct({{10, 15, 22}, {1, 2}})->UseRealTime();
+/// What a generalised-alpha step costs, in evaluations of the forces of the same object in the same run: the swing of
+/// the cube's first second, one thread. Solver choice rests on it.
+void StepInEvaluations(benchmark::State& state) {
+  using Clock = std::chrono::steady_clock;
+  Loop loop(static_cast<int>(state.range(0)), 1);
+  DynamicsConfig config;
+  config.material = kSoft;
+  config.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);
+  config.solver.threads = 1;
+  Clock::duration steps{}, evaluations{};
+  for (auto _ : state) {
+    Dynamics dynamics(config, loop.tissue);
+    TissueState tissue_state = RestState(loop.tissue);
+    for (int frame = 0; frame < 60; ++frame) {
+      const auto start = Clock::now();
+      dynamics.Advance(loop.tissue, {}, tissue_state);
+      const auto middle = Clock::now();
+      benchmark::DoNotOptimize(loop.points.Evaluate(loop.x, loop.y));
+      steps += middle - start;
+      evaluations += Clock::now() - middle;
+    }
+  }
+  state.counters["evaluations"] = std::chrono::duration<double>(steps) / std::chrono::duration<double>(evaluations);
+}
+
+/// The same swing with and without each optional part: 0 none, 1 gravity, 2 damping by mass, 3 by stiffness, 4 an
+/// obstacle far away, 5 none and at rest, asleep.
+void Part(benchmark::State& state) {
+  const int part = static_cast<int>(state.range(0));
+  const BoxTissueConfig cube = Cube(14);
+  const Tissue tissue = MakeBoxTissue(cube);
+  const SurfacePoints skin = part == 4 ? MakeBoxSkin(cube) : SurfacePoints();
+  DynamicsConfig config;
+  config.material = kSoft;
+  config.solver.threads = 1;
+  if (part == 1) config.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);
+  if (part == 2 || part == 3) config.damping = DampingConfig{part == 2 ? 0.5 : 0, part == 3 ? 0.002 : 0};
+  if (part == 4) {
+    config.obstacles.push_back({PlaneObstacle{Eigen::Vector3d(0, 0, -100), Eigen::Vector3d::UnitZ()}, 0.5});
+  }
+  Dynamics dynamics(config, tissue);
+  TissueState tissue_state = RestState(tissue);
+  for (int j = 0; j < tissue.particle_count() && part != 5; ++j) {
+    if (!tissue.particle_fixed[j]) tissue_state.velocity[j].z() = -0.5 * tissue.particle_rest[j].x() / 0.091;
+  }
+  int linear = 0, frames = 0;
+  for (auto _ : state) {
+    linear += dynamics.Advance(tissue, skin, tissue_state).linear_iterations;
+    ++frames;
+  }
+  state.counters["linear"] = static_cast<double>(linear) / frames;
+}
+
+// Cells along an edge, threads[, at rest]: 1k, 3.4k, 10k, 30k, 97k points.
+BENCHMARK(Force)->ArgsProduct({{10, 15, 22, 31, 46}, {1}})->UseRealTime()->Complexity();
+BENCHMARK(Force)->ArgsProduct({{10, 15, 22, 31, 46}, {2}})->UseRealTime()->Complexity();
 BENCHMARK(Product)->ArgsProduct({{10, 15, 22}, {1, 2}})->UseRealTime();
 BENCHMARK(TissueChanged)->Arg(10)->Arg(15)->Arg(22)->Unit(benchmark::kMillisecond);
-BENCHMARK(Step)->ArgsProduct({{9, 14, 21}, {1, 2}, {0, 1}})->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(120);
+BENCHMARK(StepInEvaluations)->Arg(9)->Arg(14)->Arg(21)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(Part)->DenseRange(0, 5)->Unit(benchmark::kMillisecond)->Iterations(120);
+BENCHMARK(Step)
+    ->ArgsProduct({{9, 14, 21}, {1, 2}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(120);
 
 }  // namespace
 }  // namespace meshless_cutting

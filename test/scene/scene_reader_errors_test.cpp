@@ -102,7 +102,10 @@ const BadScene kBadScenes[] = {
     {"frame with slash", "frame: cell", "frame: /cell",
      ":2: key `frame`: /cell: expected a frame id without leading slash"},
     {"unknown integrator", "implicit_euler", "euler",
-     ":27: key `solver.integrator`: euler: expected generalized_alpha, implicit_euler or quasi_static"},
+     ":27: key `solver.integrator`: euler: expected auto, generalized_alpha, implicit_euler, explicit or "
+     "quasi_static"},
+    {"no sub-steps", "newton_iterations: 7", "sub_steps: 0",
+     ":27: key `solver.sub_steps`: 0: expected a whole number from 1 to 1000"},
     {"fraction of an iteration", "newton_iterations: 7", "newton_iterations: 7.5",
      ":27: key `solver.newton_iterations`: 7.5: expected a whole number from 1 to 100"},
     {"missing mesh", "mesh: box.obj", "mesh: ball.obj",

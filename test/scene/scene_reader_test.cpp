@@ -81,6 +81,23 @@ TEST_F(SceneReaderTest, AbsentSectionsStayAbsent) {
   EXPECT_EQ(scene.object.T_WO.matrix(), Eigen::Matrix4d::Identity());
 }
 
+TEST_F(SceneReaderTest, ReadsHowToStep) {
+  const auto solver = [&](const std::string& text) {
+    return Read(
+               "scene_version: 1\n"
+               "object:\n"
+               "  {name: a, mesh: box.obj, cell_size_m: 0.1, lattice_size_m: 0.1,\n"
+               "   material: {youngs_modulus_pa: 1000, poisson_ratio: 0, density_kg_m3: 1000}}\n"
+               "solver: {" +
+               text + "}\n")
+        .solver;
+  };
+  EXPECT_EQ(solver("integrator: auto, sub_steps: 3").integrator, Integrator::kAuto);
+  EXPECT_EQ(solver("integrator: auto, sub_steps: 3").sub_steps, 3);
+  EXPECT_EQ(solver("integrator: explicit").integrator, Integrator::kExplicit);
+  EXPECT_EQ(solver("threads: 1").sub_steps, 1);
+}
+
 TEST_F(SceneReaderTest, FindsAPackageAboveTheScene) {
   std::ofstream(folder_ / "package.xml") << "<package>\n  <name> soft_parts </name>\n</package>\n";
   const Scene scene = Read(Replaced(kGoodScene, "box.obj", "package://soft_parts/box.obj"));

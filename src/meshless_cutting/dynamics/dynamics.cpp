@@ -5,8 +5,10 @@
 
 #include "dynamics/contact_term.h"
 #include "dynamics/elastic_term.h"
+#include "dynamics/explicit_steps.h"
 #include "dynamics/fragments.h"
 #include "dynamics/newton.h"
+#include "dynamics/solver_choice.h"
 #include "dynamics/stiffness_damping_term.h"
 #include "dynamics/time_scheme.h"
 
@@ -59,6 +61,21 @@ ContactScale ContactScaleOf(const DynamicsConfig& config, const Tissue& tissue, 
   return scale;
 }
 
+SolverChoice ChooseSolverFor(const DynamicsConfig& config, const Tissue& tissue, const LameConstants& stiffest,
+                             double contact_stiffness) {
+  SolverSituation situation;
+  situation.cell_m = CellOf(tissue);
+  situation.p_wave_modulus_pa = stiffest.lambda + 2 * stiffest.mu;
+  situation.density_kg_m3 = config.material.density_kg_m3;
+  for (const MaterialConfig& material : config.region_materials) {
+    situation.density_kg_m3 = std::min(situation.density_kg_m3, material.density_kg_m3);
+  }
+  situation.stiffness_damping_s = config.damping ? config.damping->stiffness_s : 0;
+  situation.step_s = config.time_step_s / config.solver.sub_steps;
+  situation.contact_ratio = contact_stiffness * situation.cell_m / situation.p_wave_modulus_pa;
+  return ChooseSolver(config.solver, situation);
+}
+
 }  // namespace
 
 struct Dynamics::Parts {
@@ -69,11 +86,14 @@ struct Dynamics::Parts {
         elastic(points),
         potential(elastic, terms, pool),
         newton(potential, config.solver.relative_tolerance, config.solver.newton_iterations) {
-    if (config.damping && config.damping->stiffness_s > 0) {
-      terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points, elastic));
-    }
     if (!config.obstacles.empty()) {
       terms.push_back(&contact.emplace(config.obstacles, ContactScaleOf(config, tissue, points.lame())));
+    }
+    choice = ChooseSolverFor(config, tissue, points.lame(), contact ? contact->stiffness_per_area() : 0);
+    if (choice.integrator == Integrator::kExplicit) {
+      explicit_steps.emplace(points, terms, potential);
+    } else if (config.damping && config.damping->stiffness_s > 0) {
+      terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points, elastic));
     }
   }
 
@@ -86,6 +106,8 @@ struct Dynamics::Parts {
   double EnergyOf(const Tissue& tissue, const Field& x, const Field& v);
   NewtonSolver::Verdict Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
   bool Solve(const Tissue& tissue, double time_step, AdvanceResult& result);
+  bool SolveExplicit(const Tissue& tissue, double time_step);
+  bool StillSleeps(const TissueState& state) const;
   bool SolveSteps(const Tissue& tissue, int steps, AdvanceResult& result);
 
   DynamicsConfig config;
@@ -97,8 +119,12 @@ struct Dynamics::Parts {
   std::vector<ForceTerm*> terms;
   IncrementalPotential potential;
   NewtonSolver newton;
+  SolverChoice choice;
+  std::optional<ExplicitSteps> explicit_steps;
   Fragments fragments;
 
+  bool asleep = false;  // all steps of the last frame were slept through
+  AdvanceResult sleeping_result;
   int particles = 0;
   bool skin_changed = true;
   bool first_step = true;
@@ -123,6 +149,7 @@ struct Dynamics::Parts {
 void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   particles = tissue.particle_count();
   skin_changed = true;
+  asleep = false;
   points.TissueChanged(tissue);
   elastic.TissueChanged();
   for (ForceTerm* term : terms) term->TissueChanged(particles);
@@ -229,11 +256,13 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
 }
 
 /// Where next to nothing moves and the forces balance without inertia, the object sleeps: it stays exactly where it is.
-/// Only under gravity: there, balance means that it is held or lies on something, not that it drifts.
+/// Only under gravity, or where all its pieces are held, or nothing moves at all: else balance may mean that it drifts.
 bool Dynamics::Parts::Sleeps(const Tissue& tissue, const TimeScheme& scheme) {
-  if (!config.gravity_m_s2 || IsMoving()) return false;
+  if (IsMoving()) return false;
   double fastest = 0;
   for (int j = 0; j < particles; ++j) fastest = std::max(fastest, Dot(velocity[j], velocity[j]));
+  const auto& held = fragments.held;
+  if (!config.gravity_m_s2 && fastest > 0 && std::find(held.begin(), held.end(), 0) != held.end()) return false;
   if (std::sqrt(fastest) * scheme.time_step_s() > kSleepingWay * cell) return false;
   std::fill(scratch.begin(), scratch.end(), Vector4());
   Prepare(tissue, scheme, scratch, scratch);
@@ -300,15 +329,59 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
   return solved.verdict;
 }
 
-/// One implicit step from position, velocity, acceleration, which it replaces; false: they are as before.
+/// Whether nothing has changed since the object fell asleep.
+bool Dynamics::Parts::StillSleeps(const TissueState& state) const {
+  if (!asleep || static_cast<int>(state.position.size()) != particles ||
+      static_cast<int>(state.velocity.size()) != particles) {
+    return false;
+  }
+  for (int j = 0; j < particles; ++j) {
+    const Vector4& x = position[j];
+    const Eigen::Vector3d &y = state.position[j], &v = state.velocity[j];
+    if (!(x.x == y.x() && x.y == y.y() && x.z == y.z() && v.x() == 0 && v.y() == 0 && v.z() == 0)) return false;
+  }
+  return true;
+}
+
+/// As Solve, in many small steps. False also when the energy grows: the steps were too long for what the object has become.
+bool Dynamics::Parts::SolveExplicit(const Tissue& tissue, double time_step) {
+  ExplicitSteps::Forces acting;
+  if (config.gravity_m_s2) acting.gravity = Vector4::From(*config.gravity_m_s2);
+  if (config.damping) acting.mass_damping = config.damping->mass_per_s;
+  if (config.damping) acting.stiffness_damping = config.damping->stiffness_s;
+  if (!force.empty()) acting.dead = &force;
+  const bool is_moving = IsMoving();
+  if (!driven_end.empty()) {
+    for (int j = 0; j < particles; ++j) stage[j] = position[j] + driven_share * (driven_end[j] - position[j]);
+    acting.held_end = &stage;
+  }
+  const int steps = choice.explicit_steps;  // as many in half the time when a frame is repeated in halves
+  end_position = position;
+  end_velocity = velocity;
+  end_acceleration = acceleration;
+  const double growth = kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor;
+  if (!explicit_steps->Run(tissue.particle_mass, acting, time_step / steps, steps, end_position, end_velocity,
+                           end_acceleration)) {
+    return false;
+  }
+  if (!is_moving && !(EnergyOf(tissue, end_position, end_velocity) <= growth)) return false;
+  position.swap(end_position);
+  velocity.swap(end_velocity);
+  acceleration.swap(end_acceleration);
+  return true;
+}
+
+/// One step from position, velocity, acceleration, which it replaces; false: they are as before.
 bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResult& result) {
-  const TimeScheme scheme(config.solver.integrator, time_step);
+  const TimeScheme scheme(choice.integrator, time_step);
   if (Sleeps(tissue, scheme)) {
     result.relative_residual = newton.RelativeResidual(load);
     return true;
   }
+  asleep = false;
+  if (explicit_steps) return SolveExplicit(tissue, time_step);
   NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
-  if (config.solver.integrator == Integrator::kGeneralizedAlpha &&
+  if (choice.integrator == Integrator::kGeneralizedAlpha &&
       (verdict == NewtonSolver::Verdict::kFailed || result.relative_residual > kRoughResidual ||
        (!IsMoving() && EnergyOf(tissue, end_position, end_velocity) >
                            kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor))) {
@@ -332,6 +405,7 @@ bool Dynamics::Parts::SolveSteps(const Tissue& tissue, int steps, AdvanceResult&
   position = start_position;
   velocity = start_velocity;
   acceleration = start_acceleration;
+  asleep = true;
   for (int step = 0; step < steps; ++step) {
     driven_share = 1.0 / (steps - step);
     if (!Solve(tissue, config.time_step_s / steps, result)) return false;
@@ -349,12 +423,17 @@ Dynamics::~Dynamics() = default;
 void Dynamics::TissueChanged(const Tissue& tissue) { parts_->TissueChanged(tissue); }
 
 void Dynamics::SetDriven(const std::vector<int>& particles, const std::vector<Eigen::Vector3d>& at_end) {
+  for (std::size_t i = 0; i < particles.size() && parts_->asleep; ++i) {
+    parts_->asleep = parts_->position[particles[i]].vector() == at_end[i];
+  }
   parts_->driven = particles;
   parts_->driven_at_end = at_end;
 }
 
 void Dynamics::SetForces(const std::vector<Eigen::Vector3d>& forces) {
   Parts& p = *parts_;
+  if (p.force.size() != forces.size()) p.asleep = false;
+  for (std::size_t j = 0; j < forces.size() && p.asleep; ++j) p.asleep = p.force[j].vector() == forces[j];
   p.force.resize(forces.size());
   double sum = 0;
   for (std::size_t j = 0; j < forces.size(); ++j) {
@@ -369,18 +448,20 @@ Eigen::Vector3d Dynamics::ElasticForce(int j) const { return parts_->scratch[j].
 
 AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state) {
   Parts& p = *parts_;
+  if (p.StillSleeps(state)) return p.sleeping_result;
   AdvanceResult result;
   p.Load(state);
   if (p.contact) p.contact->SetSkin(skin, p.particles, p.skin_changed);
   p.skin_changed = false;
 
-  bool solved = p.SolveSteps(tissue, 1, result);
+  bool solved = p.SolveSteps(tissue, p.config.solver.sub_steps, result);
   for (int doubling = 1; doubling <= kDoublings && !solved; ++doubling) {
     result.status |= kStepRolledBack;
-    solved = p.SolveSteps(tissue, 1 << doubling, result);
+    solved = p.SolveSteps(tissue, p.config.solver.sub_steps << doubling, result);
   }
   if (!solved) {
     result.status |= kStepFrozen;
+    p.asleep = false;
     p.position = p.start_position;
     std::fill(p.velocity.begin(), p.velocity.end(), Vector4());
     std::fill(p.acceleration.begin(), p.acceleration.end(), Vector4());
@@ -399,7 +480,10 @@ AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin,
   std::fill(p.scratch.begin(), p.scratch.end(), Vector4());
   result.elastic_j = p.points.Evaluate(p.position, p.scratch);
   if (p.contact) result.contacts = p.contact->contact_count();
+  p.sleeping_result = result;
   return result;
 }
+
+const std::string& Dynamics::solver_summary() const { return parts_->choice.reason; }
 
 }  // namespace meshless_cutting

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "scene/scene.h"
@@ -51,6 +52,7 @@ class Dynamics {
 
   /// One time step of config.time_step_s. `skin` are the vertices that touch obstacles; unused without obstacles.
   /// Same input, same bits, whatever config.solver.threads is. Allocates nothing unless the tissue or the skin grew.
+  /// An object that sleeps is left alone until the tissue, its state or what acts on it changes.
   AdvanceResult Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state);
 
   /// Fixed particles that the next frames move: where each is at their end, m, scene frame; in between it moves straight. Those that
@@ -60,6 +62,9 @@ class Dynamics {
   void SetForces(const std::vector<Eigen::Vector3d>& forces);
   /// Elastic energy's gradient by particle j at the end of the last frame, N: the force that holds j against the tissue.
   Eigen::Vector3d ElasticForce(int j) const;
+
+  /// How the steps are made, and why so: one line for a log.
+  const std::string& solver_summary() const;
 
  private:
   struct Parts;

@@ -158,15 +158,17 @@ DampingConfig ReadDamping(const YamlValue& value) {
 }
 
 SolverConfig ReadSolver(const YamlValue& value) {
-  const YamlSection section(value, {"integrator", "relative_tolerance", "newton_iterations", "threads"});
+  const YamlSection section(value, {"integrator", "relative_tolerance", "newton_iterations", "threads", "sub_steps"});
   SolverConfig solver;
   if (const auto integrator = section.Find("integrator")) {
     const std::string name = integrator->Text();
-    const std::map<std::string, Integrator> integrators = {{"generalized_alpha", Integrator::kGeneralizedAlpha},
+    const std::map<std::string, Integrator> integrators = {{"auto", Integrator::kAuto},
+                                                           {"generalized_alpha", Integrator::kGeneralizedAlpha},
                                                            {"implicit_euler", Integrator::kImplicitEuler},
+                                                           {"explicit", Integrator::kExplicit},
                                                            {"quasi_static", Integrator::kQuasiStatic}};
     const auto found = integrators.find(name);
-    if (found == integrators.end()) integrator->Fail("generalized_alpha, implicit_euler or quasi_static");
+    if (found == integrators.end()) integrator->Fail("auto, generalized_alpha, implicit_euler, explicit or quasi_static");
     solver.integrator = found->second;
   }
   if (const auto tolerance = section.Find("relative_tolerance")) {
@@ -174,6 +176,7 @@ SolverConfig ReadSolver(const YamlValue& value) {
   }
   if (const auto iterations = section.Find("newton_iterations")) solver.newton_iterations = iterations->Integer(1, 100);
   if (const auto threads = section.Find("threads")) solver.threads = threads->Integer(1, 256);
+  if (const auto steps = section.Find("sub_steps")) solver.sub_steps = steps->Integer(1, 1000);
   return solver;
 }
 
