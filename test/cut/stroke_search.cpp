@@ -229,6 +229,8 @@ const std::vector<SearchBody>& SearchBodies() {
       {"sphere", 0.013, [] { return Fill(meshes::Sphere(0.02), 0.009); }},
       {"torus", 0.01, [] { return Fill(meshes::Torus(0.02, 0.008), 0.006); }},
       {"liver", 0.035, [] { return Fill(Liver(), 0.025); }},
+      {"brain", 0.028,
+       [] { return Fill(ReadTriangleMesh(MESHLESS_CUTTING_SOURCE_DIR "/meshes/brain.obj", 1), 0.018); }},
       {"flipped", 0.013, [] { return Fill(meshes::Flipped(meshes::Sphere(0.02), 0.3), 0.009); }},
       {"holed", 0.013,
        [] {

@@ -17,7 +17,7 @@ struct SearchBody {
   std::function<Lattice()> make_lattice;
 };
 
-/// Block, thin plate, sphere, torus, liver, and broken meshes: flipped faces, holes, noise.
+/// Block, thin plate, sphere, torus, liver, brain, and broken meshes: flipped faces, holes, noise.
 const std::vector<SearchBody>& SearchBodies();
 
 struct SearchCounts {

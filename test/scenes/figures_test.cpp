@@ -106,6 +106,12 @@ TEST(Figures, Fig9ACurvedBladeThatTwistsMissesNothing) {
   EXPECT_GT(outcome.discrete.missed(), 0);
 }
 
+TEST(Figures, Fig10ABrainIsCutThroughItsFolds) {
+  const Outcome outcome = Play("fig10_brain", 0, 30);
+  EXPECT_GT(outcome.links_cut, 2000);
+  EXPECT_GT(outcome.discrete.missed(), 100);
+}
+
 TEST(Figures, Fig11ALiverIsCutSeveralTimesWhileItTilts) {
   const Outcome outcome = Play("fig11_liver", 0, 8);
   EXPECT_EQ(outcome.fragment_volume_m3.size(), 3u);  // two pieces come free, the third stroke is an incision
