@@ -14,14 +14,15 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 DEBIAN_PACKAGES=(
   build-essential cmake pkg-config
   libassimp-dev libbenchmark-dev libboost-dev libbz2-dev libeigen3-dev libgtest-dev libyaml-cpp-dev zlib1g-dev
-  libdiagnostic-updater-dev libgeometry-msgs-dev libinteractive-markers-dev libnodeletlib-dev libnodeletlib-tools
-  librosbag-dev libroscpp-dev libroslib-dev librostest-dev libstd-srvs-dev libtf2-msgs-dev libtf2-ros-dev libtopic-tools-dev
+  libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev libgeometry-msgs-dev libinteractive-markers-dev libnodeletlib-dev libnodeletlib-tools
+  librosbag-dev libroscpp-dev libroslib-dev librostest-dev librviz-dev libsensor-msgs-dev libstd-srvs-dev libtf2-msgs-dev libtf2-ros-dev libtopic-tools-dev
   liburdf-dev libvisualization-msgs-dev pluginlib-dev
   ros-message-generation ros-diagnostic-msgs ros-geometry-msgs ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs ros-std-srvs
   ros-tf2-msgs ros-visualization-msgs
   rosbash rosout rospack-tools tf2-tools
   python3-numpy python3-rosbag python3-roslaunch python3-rosmsg python3-rosnode python3-rosservice python3-rostest
-  python3-rostopic python3-std-srvs python3-visualization-msgs ros-robot-state-publisher)
+  python3-rostopic python3-std-srvs python3-visualization-msgs ros-robot-state-publisher
+  catkin-lint python3-dynamic-reconfigure python3-matplotlib rviz)
 NOETIC_PACKAGES=(
   build-essential cmake pkg-config
   libassimp-dev libbenchmark-dev libboost-dev libbz2-dev libeigen3-dev libgtest-dev libyaml-cpp-dev zlib1g-dev python3-numpy
@@ -30,9 +31,8 @@ NOETIC_PACKAGES=(
   ros-noetic-rosbag-storage ros-noetic-roscpp ros-noetic-rosgraph-msgs ros-noetic-roslaunch ros-noetic-roslib
   ros-noetic-roslz4 ros-noetic-rosbash ros-noetic-rosmsg ros-noetic-rosnode ros-noetic-rosservice ros-noetic-rostest
   ros-noetic-rostopic ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-std-srvs ros-noetic-tf2 ros-noetic-tf2-msgs
-  ros-noetic-tf2-ros ros-noetic-topic-tools ros-noetic-urdf ros-noetic-visualization-msgs)
-DEBIAN_RVIZ=(rviz)
-NOETIC_RVIZ=(ros-noetic-rviz)
+  ros-noetic-tf2-ros ros-noetic-topic-tools ros-noetic-urdf ros-noetic-visualization-msgs
+  ros-noetic-dynamic-reconfigure ros-noetic-rviz python3-catkin-lint python3-matplotlib)
 SCREENSHOT_PACKAGES=(xvfb xauth imagemagick libgl1-mesa-dri x11-utils)
 
 is_noetic() { [ -r /etc/os-release ] && grep -q 'VERSION_CODENAME=focal' /etc/os-release; }
@@ -61,9 +61,6 @@ install() {
 
 install_build_dependencies() {
   if is_noetic; then install "${NOETIC_PACKAGES[@]}"; else install "${DEBIAN_PACKAGES[@]}"; fi
-}
-install_rviz() {
-  if is_noetic; then install "${NOETIC_RVIZ[@]}"; else install "${DEBIAN_RVIZ[@]}"; fi
 }
 
 # build [CMAKE_ARGUMENT...]

@@ -8,7 +8,6 @@ headless=false
 [ "${1:-}" = "--headless" ] && headless=true
 
 install_build_dependencies
-install_rviz
 if $headless; then install "${SCREENSHOT_PACKAGES[@]}"; fi
 build -DBUILD_TESTING=OFF
 results="$SOURCE_DIR/results"

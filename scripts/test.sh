@@ -4,6 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 install_build_dependencies
+install "${SCREENSHOT_PACKAGES[@]}"
 build -DMESHLESS_CUTTING_WERROR=ON
 say "Testing"
 cd "$BUILD_DIR"

@@ -85,17 +85,19 @@ SurfaceTopologyPtr ToTopology(const Scene& scene, const Surface& surface, const 
   for (const SurfaceRegion region : surface.region) message->region.push_back(static_cast<std::uint8_t>(region));
   message->fragment = surface.fragment;
   message->rest_positions = ToFloats(surface.rest_positions);
+  message->rest_pose = ToPose(scene.object.T_WO);
   return message;
 }
 
-SurfacePositionsPtr ToPositions(const Scene& scene, const Surface& surface, const FrameTag& tag, int* not_finite) {
+SurfacePositionsPtr ToPositions(const Scene& scene, const Surface& surface, const FrameTag& tag,
+                                PositionEncoding encoding, int* not_finite) {
   auto message = boost::make_shared<SurfacePositions>();
   message->header = Header(scene, tag);
   message->object = scene.object.name;
   message->session = tag.session;
   message->version = surface.version;
   message->step = tag.step;
-  message->positions = ToFloats(surface.positions);
+  Encode(surface.positions, encoding, message.get());
   if (not_finite) {
     *not_finite = static_cast<int>(std::count_if(surface.positions.begin(), surface.positions.end(),
                                                  [](const Eigen::Vector3d& p) { return !p.allFinite(); }));
@@ -125,7 +127,7 @@ CutEventPtr ToCutEvent(const Scene& scene, const StrokeEvent& event, const Frame
 }
 
 StepStatisticsPtr ToStatistics(const Scene& scene, const FrameStatistics& statistics, const FrameTag& tag,
-                                  std::int64_t input_until_ns, bool with_wall_times) {
+                               std::int64_t input_until_ns, bool with_wall_times) {
   auto message = boost::make_shared<StepStatistics>();
   message->header = Header(scene, tag);
   message->session = tag.session;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "messages.h"
+#include "position_encoding.h"
 #include "simulation.h"
 
 namespace meshless_cutting {
@@ -31,11 +32,11 @@ std::vector<Eigen::Vector3d> ToPoints(const geometry_msgs::Polygon& polygon);
 SurfaceTopologyPtr ToTopology(const Scene& scene, const Surface& surface, const FrameTag& tag);
 /// `not_finite` counts the positions that are not, if given.
 SurfacePositionsPtr ToPositions(const Scene& scene, const Surface& surface, const FrameTag& tag,
-                                int* not_finite = nullptr);
+                                PositionEncoding encoding = PositionEncoding::kFloat32, int* not_finite = nullptr);
 CutEventPtr ToCutEvent(const Scene& scene, const StrokeEvent& event, const FrameTag& tag);
 /// `with_wall_times` false leaves all that depends on the machine at 0.
 StepStatisticsPtr ToStatistics(const Scene& scene, const FrameStatistics& statistics, const FrameTag& tag,
-                                  std::int64_t input_until_ns, bool with_wall_times);
+                               std::int64_t input_until_ns, bool with_wall_times);
 SessionInfoPtr ToSessionInfo(const Simulation& simulation, const FrameTag& tag);
 
 }  // namespace meshless_cutting

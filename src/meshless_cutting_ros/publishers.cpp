@@ -24,6 +24,7 @@ Publishers::Publishers(ros::NodeHandle nh, std::function<void()> every_second)
       statistics_(nh.advertise<StepStatistics>(kStatisticsTopic, kQueue)),
       session_(nh.advertise<SessionInfo>(kSessionTopic, 1, true)),
       marker_(nh.advertise<visualization_msgs::Marker>(kMarkerTopic, 50)),
+      surroundings_(nh.advertise<visualization_msgs::Marker>(kSurroundingsTopic, 50)),
       mapping_marker_(nh.advertise<visualization_msgs::MarkerArray>(kMappingMarkerTopic, 2)),
       every_second_(std::move(every_second)),
       thread_([this] { Run(); }) {}
@@ -83,30 +84,40 @@ void Publishers::Publish(const FrameView& view) {
 
 void Publishers::PublishMarkers(bool new_frame) {
   if (!last_view_ || !last_topology_) return;
+  const bool surface = marker_.getNumSubscribers() > 0;
+  const bool surroundings = surroundings_.getNumSubscribers() > 0;
+  const bool mapping = mapping_marker_.getNumSubscribers() > 0 && last_view_->mapping;
+  if (!surface && !surroundings && !mapping) return;
   const ros::SteadyTime now = ros::SteadyTime::now();
   const double period = new_frame ? 1 / kMarkerRateHz : kIdleMarkerPeriod;
   if ((now - last_marker_).toSec() < period) return;
-  const Scene& scene = *last_view_->scene;
-  const SurfacePositions& positions = *last_view_->messages.positions;
-  if (mapping_marker_.getNumSubscribers() > 0 && last_view_->mapping) {
-    mapping_marker_.publish(MappingMarkers(*last_view_->mapping, positions));
-    last_marker_ = now;
-  }
-  if (marker_.getNumSubscribers() == 0) return;
   last_marker_ = now;
+  const SurfacePositionsConstPtr positions = AsFloat32(last_view_->messages.positions);
+  if (mapping) mapping_marker_.publish(MappingMarkers(*last_view_->mapping, *positions));
+  if (!surface && !surroundings) return;
+  if (clear_markers_) PublishMarker(ClearMarker(*last_view_->scene, positions->header.stamp));
+  if (surface) marker_.publish(SurfaceMarker(*last_topology_, *positions));
+  PublishSurroundings(*positions);
+  clear_markers_ = false;
+}
+
+void Publishers::PublishSurroundings(const SurfacePositions& positions) {
+  const Scene& scene = *last_view_->scene;
   const ros::Time stamp = positions.header.stamp;
-  if (clear_markers_) marker_.publish(ClearMarker(scene, stamp));
-  marker_.publish(SurfaceMarker(*last_topology_, positions));
   if (!scene.object.fixed.empty()) {
     const auto held = FixedMarker(scene, *last_topology_, positions);
-    if (!held.points.empty()) marker_.publish(held);
+    if (!held.points.empty()) PublishMarker(held);
   }
-  for (const auto& tool : ToolMarkers(scene, last_view_->tools, stamp)) marker_.publish(tool);
-  if (clear_markers_ || (now - last_surroundings_).toSec() >= 1) {
-    for (const auto& obstacle : ObstacleMarkers(scene, stamp)) marker_.publish(obstacle);
-    last_surroundings_ = now;
-  }
-  clear_markers_ = false;
+  for (const auto& tool : ToolMarkers(scene, last_view_->tools, stamp)) PublishMarker(tool);
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (!clear_markers_ && (now - last_surroundings_).toSec() < 1) return;
+  for (const auto& obstacle : ObstacleMarkers(scene, stamp)) PublishMarker(obstacle);
+  last_surroundings_ = now;
+}
+
+void Publishers::PublishMarker(const visualization_msgs::Marker& marker) {
+  if (marker_.getNumSubscribers() > 0) marker_.publish(marker);
+  if (surroundings_.getNumSubscribers() > 0) surroundings_.publish(marker);
 }
 
 }  // namespace meshless_cutting

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ros/ros.h>
+#include <visualization_msgs/Marker.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -31,8 +32,11 @@ class Publishers {
   void Run();
   void Publish(const FrameView& view);
   void PublishMarkers(bool new_frame);
+  void PublishSurroundings(const SurfacePositions& positions);
+  /// On both topics, where somebody looks.
+  void PublishMarker(const visualization_msgs::Marker& marker);
 
-  ros::Publisher topology_, positions_, cut_events_, statistics_, session_, marker_, mapping_marker_;
+  ros::Publisher topology_, positions_, cut_events_, statistics_, session_, marker_, surroundings_, mapping_marker_;
   std::function<void()> every_second_;
 
   std::atomic<bool> mapping_wanted_{false};

@@ -23,7 +23,7 @@ FrameMessages Session::Begin(std::int64_t stamp_ns) const {
   FrameMessages messages;
   messages.session = ToSessionInfo(simulation_, tag);
   messages.topology = ToTopology(simulation_.scene(), simulation_.surface(), tag);
-  messages.positions = ToPositions(simulation_.scene(), simulation_.surface(), tag);
+  messages.positions = ToPositions(simulation_.scene(), simulation_.surface(), tag, encoding_);
   return messages;
 }
 
@@ -94,7 +94,7 @@ FrameMessages Session::Step(std::int64_t input_end_ns) {
   if (changed || step_ % frames_per_topology_ == 0) messages.topology = ToTopology(scene, surface, tag);
   published_version_ = surface.version;
   int not_finite = 0;
-  messages.positions = ToPositions(scene, surface, tag, &not_finite);
+  messages.positions = ToPositions(scene, surface, tag, encoding_, &not_finite);
   not_finite_ += static_cast<std::uint64_t>(not_finite);
   for (const StrokeEvent& event : simulation_.events()) messages.events.push_back(ToCutEvent(scene, event, tag));
   messages.statistics =

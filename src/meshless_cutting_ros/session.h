@@ -60,6 +60,9 @@ class Session {
   /// One frame with the samples up to `input_end_ns`.
   FrameMessages Step(std::int64_t input_end_ns);
 
+  /// How positions lie in the messages from now on.
+  void set_encoding(PositionEncoding encoding) { encoding_ = encoding; }
+
   /// Back to the start under a new number; waiting samples are forgotten.
   void Reset(std::uint32_t number);
 
@@ -80,6 +83,7 @@ class Session {
   std::uint32_t number_;
   InputReports reports_;
   WallTimes wall_times_;
+  PositionEncoding encoding_ = PositionEncoding::kFloat32;
   std::optional<SessionClock> clock_;
   std::uint64_t step_ = 0;
   std::uint64_t frames_per_topology_;  // a bag can be entered anywhere within a second

@@ -34,6 +34,8 @@ SimulatorRos::SimulatorRos(const ros::NodeHandle& private_nh) : nh_(private_nh),
   paused_shown_ = paused_;
   input_delay_ns_ = ToNanoseconds(nh_.param<double>(kInputDelayParameter, 0.003));
   max_lag_ns_ = ToNanoseconds(nh_.param<double>(kMaxLagParameter, 0.05));
+  encoding_ = ParseEncoding("parameter " + nh_.resolveName(kEncodingParameter),
+                            nh_.param<std::string>(kEncodingParameter, "float32"));
   run_ = Load(scene, session_number_);
   run_.inputs->set_check_age(!paused_);
 
@@ -82,6 +84,7 @@ SimulatorRos::Run SimulatorRos::Load(const std::string& scene, std::uint32_t num
                                             told = stage;
                                             ROS_INFO("Loading %s: %s", run.scene->object.name.c_str(), stage.c_str());
                                           });
+  run.session->set_encoding(encoding_);
   run.inputs = std::make_unique<ToolInputs>(input_nh_, *run.scene, reports);
   const Simulation& simulation = run.session->simulation();
   ROS_INFO("Scene %s: object %s, %zu triangles, %d particles, %d integration points, %zu tools", scene.c_str(),

@@ -79,6 +79,7 @@ class SimulatorRos {
   ros::CallbackQueue input_queue_, service_queue_;
   std::int64_t input_delay_ns_ = 0;
   std::int64_t max_lag_ns_ = 0;
+  PositionEncoding encoding_ = PositionEncoding::kFloat32;
 
   // Of the loop; the scene and the inputs are also looked at by diagnostics, under run_mutex_.
   std::mutex run_mutex_;

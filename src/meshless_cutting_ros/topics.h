@@ -13,6 +13,7 @@ inline constexpr char kCutEventsTopic[] = "cut_events";
 inline constexpr char kStatisticsTopic[] = "statistics";
 inline constexpr char kSessionTopic[] = "session";
 inline constexpr char kMarkerTopic[] = "marker";
+inline constexpr char kSurroundingsTopic[] = "surroundings";
 inline constexpr char kMappingMarkerTopic[] = "mapping_marker";
 
 // Services.
@@ -27,6 +28,7 @@ inline constexpr char kSceneParameter[] = "scene";               // path or pack
 inline constexpr char kStartPausedParameter[] = "start_paused";  // bool, false
 inline constexpr char kInputDelayParameter[] = "input_delay_s";  // a frame waits this long for the last of its samples
 inline constexpr char kMaxLagParameter[] = "max_lag_s";          // further behind than this, simulated time slips
+inline constexpr char kEncodingParameter[] = "encoding";         // of positions: float32 or uint16
 inline constexpr char kRobotDescriptionParameter[] = "/robot_description";
 
 // What `replay` and the players call the simulator unless told otherwise.

@@ -105,6 +105,7 @@ ReplayResult RunReplay(const ReplayOptions& options, const ReplayProgress& progr
   Session session(scene, 1, reports, Session::WallTimes::kLeftOut, [&](const std::string& stage, double share) {
     if (!progress(share, stage)) give_up();
   });
+  session.set_encoding(options.encoding);
   Writer writer(bag.get(), options.name);
   writer.Write(session.Begin(input.first_ns));
   session.Start(input.first_ns);

@@ -8,7 +8,7 @@ namespace meshless_cutting {
 
 const char kReplayUsage[] =
     "usage: replay --scene SCENE.yaml --input IN.bag --output OUT.bag [--tool NAME:=TOPIC]... [--name /simulator] "
-    "[--urdf FILE]\n"
+    "[--urdf FILE] [--encoding float32|uint16]\n"
     "\n"
     "Steps the scene over the tool poses of IN.bag, from the first to the last, and writes every message that the node "
     "would\n"
@@ -18,6 +18,7 @@ const char kReplayUsage[] =
     "  --tool    topic of a tool; default: /simulator/<topic of the scene>, or the only topic that ends with it\n"
     "  --name    name of the simulator whose topics are read and written; default /simulator\n"
     "  --urdf    robot description, for scenes that take a cutting edge from a link\n"
+    "  --encoding  of positions: float32 (default; the node's bits) or uint16 (half the size)\n"
     "\n"
     "Exit status 0, or 1 with one line on stderr. A bag that is damaged is used as far as it can be read; the loss is "
     "said and\n"
@@ -25,12 +26,14 @@ const char kReplayUsage[] =
 
 ReplayOptions ParseReplayOptions(const std::vector<std::string>& arguments) {
   ReplayOptions options;
+  std::string encoding = "float32";
   options.name = kDefaultSimulatorName;
   const std::map<std::string, std::string*> texts = {{"--scene", &options.scene},
                                                      {"--input", &options.input},
                                                      {"--output", &options.output},
                                                      {"--name", &options.name},
-                                                     {"--urdf", &options.urdf}};
+                                                     {"--urdf", &options.urdf},
+                                                     {"--encoding", &encoding}};
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     std::string argument = arguments[i];
     if (argument == "--help" || argument == "-h") {
@@ -40,7 +43,8 @@ ReplayOptions ParseReplayOptions(const std::vector<std::string>& arguments) {
     const auto text = texts.find(argument);
     if (text == texts.end() && argument != "--tool") {
       throw std::runtime_error(argument +
-                               ": unknown argument; expected --scene, --input, --output, --tool, --name or --urdf");
+                               ": unknown argument; expected --scene, --input, --output, --tool, --name, --urdf or "
+                               "--encoding");
     }
     if (i + 1 == arguments.size()) throw std::runtime_error(argument + ": expected a value after it");
     const std::string& value = arguments[++i];
@@ -57,6 +61,7 @@ ReplayOptions ParseReplayOptions(const std::vector<std::string>& arguments) {
   for (const char* name : {"--scene", "--input", "--output"}) {
     if (texts.at(name)->empty()) throw std::runtime_error(std::string(name) + ": missing; see replay --help");
   }
+  options.encoding = ParseEncoding("--encoding", encoding);
   if (options.name.front() != '/') options.name = "/" + options.name;
   return options;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "position_encoding.h"
+
 namespace meshless_cutting {
 
 struct ReplayOptions {
@@ -14,6 +16,7 @@ struct ReplayOptions {
   std::map<std::string, std::string> topics;  // tool -> topic, where they are not those of the scene
   std::string name;                           // of the simulator: prefix of topics
   std::string urdf;                           // file; for scenes that take an edge from a link
+  PositionEncoding encoding = PositionEncoding::kFloat32;  // of the positions written
   bool help = false;
 };
 
