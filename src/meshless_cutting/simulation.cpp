@@ -88,6 +88,11 @@ DynamicsConfig MakeDynamicsConfig(const Scene& scene) {
   return config;
 }
 
+Tuning TuningOf(const Scene& scene) {
+  return {scene.gravity_m_s2.value_or(Eigen::Vector3d::Zero()), scene.damping.value_or(DampingConfig()),
+          scene.solver.newton_iterations};
+}
+
 }  // namespace
 
 struct Simulation::Parts {
@@ -99,6 +104,12 @@ struct Simulation::Parts {
     FilledLattice filled = Fill(scene);
     lattice = std::move(filled.lattice);
     lattice_report = filled.report;
+    for (const LinkObstacle& obstacle : scene.link_obstacles) {
+      throw std::runtime_error(SceneMessage(scene, obstacle.key, obstacle.link,
+                                            "expected a robot description: only the ROS programs have one; give the "
+                                            "obstacle as box_m"));
+    }
+    tuning = TuningOf(scene);
     built.gravity = scene.gravity_m_s2.has_value();
     built.damping = scene.damping.has_value();
     built.fixed = !scene.object.fixed.empty();
@@ -136,6 +147,7 @@ struct Simulation::Parts {
     body = std::make_unique<SoftBody>(lattice, scene.object, built.tools || built.slits);
     if (built.slits) OpenSlits();
     dynamics = std::make_unique<Dynamics>(MakeDynamicsConfig(scene), body->tissue());
+    if (tuning != TuningOf(scene)) dynamics->Tune(tuning, body->tissue());
     if (built.tools) cutting.emplace(scene, *body);
     if (built.fixed || built.prescribed) driven.emplace(scene);
     if (built.loads) loads.emplace(scene);
@@ -156,6 +168,7 @@ struct Simulation::Parts {
   void Count();
 
   Scene scene;
+  Tuning tuning;
   BuiltParts built;
   Lattice lattice;
   LatticeReport lattice_report;
@@ -342,6 +355,12 @@ SampleVerdict Simulation::AddToolSample(int tool, const ToolSample& sample) {
 bool Simulation::SetToolEdge(int tool, const std::vector<Eigen::Vector3d>& points) {
   return parts_->cutting->tools.at(static_cast<size_t>(tool)).tool.SetEdge(points);
 }
+
+void Simulation::SetTuning(const Tuning& tuning) {
+  parts_->tuning = tuning;
+  parts_->dynamics->Tune(tuning, parts_->body->tissue());
+}
+const Tuning& Simulation::tuning() const { return parts_->tuning; }
 
 void Simulation::StartAt(double time_s) { parts_->start_s = parts_->statistics.time_s = time_s; }
 

@@ -60,6 +60,10 @@ class Simulation {
   SampleVerdict AddToolSample(int tool, const ToolSample& sample);
   bool SetToolEdge(int tool, const std::vector<Eigen::Vector3d>& points);
 
+  /// What may change at run time: from the next Step() on, and after Reset(). The scene's at first.
+  void SetTuning(const Tuning& tuning);
+  const Tuning& tuning() const;
+
   /// Simulated time of the start of the first frame; only before the first Step(). Default 0.
   void StartAt(double time_s);
 

@@ -30,6 +30,14 @@ std::string Name(InputFault fault) {
       return "bad edge";
     case InputFault::kOverflow:
       return "queue full";
+    case InputFault::kFarAway:
+      return "far away";
+    case InputFault::kNotUnit:
+      return "not a unit quaternion";
+    case InputFault::kNoButton:
+      return "no such button";
+    case InputFault::kStale:
+      return "silent";
   }
   return "unknown";
 }
@@ -79,8 +87,8 @@ std::string InputReport::Expectation(InputFault fault) const {
     case InputFault::kJump: {
       std::ostringstream words;
       words << "expected at most " << max_speed_m_s_
-            << " m/s; the blade starts anew there and cut nothing on the way: raise max_speed_m_s, or check the units "
-               "(m)";
+            << " m/s; the blade starts anew there and cut nothing on the way: raise max_speed_m_s, or set "
+               "position_scale if the driver does not send metres";
       return words.str();
     }
     case InputFault::kTooOld:
@@ -99,6 +107,14 @@ std::string InputReport::Expectation(InputFault fault) const {
       return "expected finite points, as many as cutting_edge_m has; the edge stays as it was";
     case InputFault::kOverflow:
       return "expected fewer samples between two frames; the oldest was dropped: is the simulation paused?";
+    case InputFault::kFarAway:
+      return "expected at most 10 m from the origin of the scene frame; used as it is";
+    case InputFault::kNotUnit:
+      return "expected a unit quaternion; normalised: let the driver do so, its order is x, y, z, w";
+    case InputFault::kNoButton:
+      return "expected a sensor_msgs/Joy with that button; the blade stays as it was: change blade_button.index";
+    case InputFault::kStale:
+      return "expected samples all the time; the blade is inactive until they come again: does the driver live?";
   }
   return {};
 }

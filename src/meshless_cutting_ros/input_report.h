@@ -11,7 +11,8 @@
 
 namespace meshless_cutting {
 
-/// Why a sample was not used. kJump is used, but as the start of a new path.
+/// What was wrong with a sample. kJump is used, but as the start of a new path; kFarAway and kNotUnit are used and only
+/// reported; kStale is a sample that did not come.
 enum class InputFault {
   kNotFinite,
   kZeroQuaternion,
@@ -24,8 +25,12 @@ enum class InputFault {
   kWrongType,
   kBadEdge,
   kOverflow,
+  kFarAway,
+  kNotUnit,
+  kNoButton,
+  kStale,
 };
-inline constexpr int kInputFaults = 11;
+inline constexpr int kInputFaults = 15;
 
 /// Short name of a fault, as in diagnostics: "back in time".
 std::string Name(InputFault fault);

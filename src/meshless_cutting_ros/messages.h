@@ -2,6 +2,7 @@
 #pragma once
 
 #include <meshless_cutting/CutEvent.h>
+#include <meshless_cutting/FrameInput.h>
 #include <meshless_cutting/SessionInfo.h>
 #include <meshless_cutting/StepStatistics.h>
 #include <meshless_cutting/SurfacePositions.h>

@@ -22,6 +22,7 @@ Publishers::Publishers(ros::NodeHandle nh, std::function<void()> every_second)
       positions_(nh.advertise<SurfacePositions>(kPositionsTopic, kQueue)),
       cut_events_(nh.advertise<CutEvent>(kCutEventsTopic, 1000)),
       statistics_(nh.advertise<StepStatistics>(kStatisticsTopic, kQueue)),
+      inputs_(nh.advertise<FrameInput>(kInputsTopic, kQueue)),
       session_(nh.advertise<SessionInfo>(kSessionTopic, 1, true)),
       marker_(nh.advertise<visualization_msgs::Marker>(kMarkerTopic, 50)),
       surroundings_(nh.advertise<visualization_msgs::Marker>(kSurroundingsTopic, 50)),
@@ -80,6 +81,7 @@ void Publishers::Publish(const FrameView& view) {
   positions_.publish(messages.positions);
   for (const CutEventConstPtr& event : messages.events) cut_events_.publish(event);
   if (messages.statistics) statistics_.publish(messages.statistics);
+  if (messages.input) inputs_.publish(messages.input);
 }
 
 void Publishers::PublishMarkers(bool new_frame) {

@@ -36,7 +36,8 @@ class Publishers {
   /// On both topics, where somebody looks.
   void PublishMarker(const visualization_msgs::Marker& marker);
 
-  ros::Publisher topology_, positions_, cut_events_, statistics_, session_, marker_, surroundings_, mapping_marker_;
+  ros::Publisher topology_, positions_, cut_events_, statistics_, inputs_, session_, marker_, surroundings_,
+      mapping_marker_;
   std::function<void()> every_second_;
 
   std::atomic<bool> mapping_wanted_{false};

@@ -41,6 +41,16 @@ Scene LoadSceneFile(const std::string& scene_name, const std::string& robot_desc
           SceneMessage(scene, "tools[" + std::to_string(i) + "].urdf_link", tool.urdf_link, error.what()));
     }
   }
+  for (const LinkObstacle& obstacle : scene.link_obstacles) {
+    try {
+      for (const BoxObstacle& box : CollisionBoxes(robot_description, obstacle.link, scene.frame)) {
+        scene.obstacles.push_back({box, obstacle.friction});
+      }
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(SceneMessage(scene, obstacle.key, obstacle.link, error.what()));
+    }
+  }
+  scene.link_obstacles.clear();
   return scene;
 }
 

@@ -28,6 +28,7 @@ class SessionClock {
   /// Simulated time at the end of the last frame that was begun, on the clock of the tools at the start.
   std::int64_t SimulatedStamp() const { return SimulatedStamp(frame_); }
   std::int64_t SimulatedStamp(std::uint64_t frame) const;
+  std::int64_t start_ns() const { return start_ns_; }
   std::int64_t input_end_ns() const { return knots_.back().input_ns; }
   /// How far simulated time is behind the clock of the tools, s.
   double slip_s() const;

@@ -13,9 +13,8 @@ namespace meshless_cutting {
 namespace {
 
 constexpr std::int64_t kLongestSleep_ns = 5000000;
-// Time that goes back by more starts a new session; a frame that is further behind starts at the present.
+// Time that goes back by more starts a new session.
 constexpr std::int64_t kTimeJump_ns = 100000000;
-constexpr std::int64_t kLongestSlip_ns = 1000000000;
 
 std::int64_t ToNanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
@@ -51,6 +50,7 @@ SimulatorRos::SimulatorRos(const ros::NodeHandle& private_nh) : nh_(private_nh),
   service_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &service_queue_);
   input_spinner_->start();
   service_spinner_->start();
+  StartReconfigure();
 }
 
 SimulatorRos::~SimulatorRos() {
@@ -58,12 +58,14 @@ SimulatorRos::~SimulatorRos() {
   command_wake_.notify_all();
   services_.clear();
   service_spinner_->stop();  // the loop still answers what was asked
+  reconfigure_.reset();
   {
     const std::lock_guard<std::mutex> lock(command_mutex_);
     commands_.emplace_back();  // empty: the loop's end
   }
   command_wake_.notify_all();
   loop_.join();
+  run_.forces->Zero(ros::Time::now());
   input_spinner_->stop();
   publishers_.reset();
 }
@@ -86,6 +88,7 @@ SimulatorRos::Run SimulatorRos::Load(const std::string& scene, std::uint32_t num
                                           });
   run.session->set_encoding(encoding_);
   run.inputs = std::make_unique<ToolInputs>(input_nh_, *run.scene, reports);
+  run.forces = std::make_unique<ForcePublisher>(nh_, *run.scene);
   const Simulation& simulation = run.session->simulation();
   ROS_INFO("Scene %s: object %s, %zu triangles, %d particles, %d integration points, %zu tools", scene.c_str(),
            run.scene->object.name.c_str(), simulation.surface().triangles.size(), simulation.statistics().particles,
@@ -137,11 +140,8 @@ std::int64_t SimulatorRos::MakeFrameIfDue() {
   const std::int64_t present = now - input_delay_ns_;
   const std::int64_t lag = present - session.NextInputEnd();
   if (lag < 0) return std::min(kLongestSleep_ns, -lag);
-  if (lag > kLongestSlip_ns) {
-    session.Resume(present);
-    return 0;
-  }
-  // Behind by a little: frames follow each other at once. By more: simulated time slips instead of bursting.
+  // Behind by a little: frames follow each other at once. By more: simulated time slips instead of bursting; the one
+  // frame takes all samples up to the present, so that no part of a tool's path is lost.
   MakeFrame(lag > max_lag_ns_ ? present : session.NextInputEnd());
   return 0;
 }
@@ -162,6 +162,7 @@ void SimulatorRos::MakeFrame(std::int64_t input_end_ns) {
   Session& session = *run_.session;
   run_.inputs->HandOver(&session);
   FrameMessages messages = session.Step(input_end_ns);
+  run_.forces->Publish(session.simulation(), messages.positions->header.stamp);
   const FrameStatistics& statistics = session.simulation().statistics();
   monitor_.Add(1e-9 * static_cast<double>(ros::SteadyTime::now().toNSec()), statistics.total_s, run_.scene->time_step_s,
                statistics.status);
@@ -173,10 +174,17 @@ void SimulatorRos::MakeFrame(std::int64_t input_end_ns) {
 void SimulatorRos::BeginSession() { publishers_->Push(View(run_.session->Begin(clock_.valid() ? clock_.Now() : 0))); }
 
 void SimulatorRos::RestartSession(const std::string& reason) {
+  run_.forces->Zero(ros::Time::now());
   run_.session->Reset(++session_number_);
   ROS_INFO("Session %u: %s", session_number_, reason.c_str());
   monitor_.Restart();
   BeginSession();
+}
+
+void SimulatorRos::ForgetOldSamples() {
+  if (paused_ || !clock_.valid()) return;  // stepped by hand, a session begins with the samples that wait
+  run_.inputs->HandOver(run_.session.get());
+  run_.session->Resume(clock_.Now() - input_delay_ns_);
 }
 
 void SimulatorRos::SetPaused(bool paused) {
@@ -185,6 +193,7 @@ void SimulatorRos::SetPaused(bool paused) {
     run_.inputs->HandOver(run_.session.get());
     run_.session->Resume(last_now_ns_ - input_delay_ns_);
   }
+  if (paused) run_.forces->Zero(ros::Time::now());
   paused_ = paused;
   paused_shown_ = paused;
   run_.inputs->set_check_age(!paused);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <dynamic_reconfigure/server.h>
 #include <meshless_cutting/LoadScene.h>
 #include <meshless_cutting/SaveSurface.h>
+#include <meshless_cutting/SimulatorConfig.h>
 #include <meshless_cutting/Step.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -20,6 +22,7 @@
 #include <thread>
 #include <vector>
 
+#include "force_publisher.h"
 #include "frame_clock.h"
 #include "loop_monitor.h"
 #include "publishers.h"
@@ -42,6 +45,7 @@ class SimulatorRos {
     std::shared_ptr<const Scene> scene;
     std::unique_ptr<Session> session;
     std::unique_ptr<ToolInputs> inputs;
+    std::unique_ptr<ForcePublisher> forces;
   };
 
   Run Load(const std::string& scene, std::uint32_t number) const;
@@ -53,6 +57,8 @@ class SimulatorRos {
   void RunCommands();
   void BeginSession();
   void RestartSession(const std::string& reason);
+  /// Leaves samples that came in while a session was built to the session before.
+  void ForgetOldSamples();
   /// Makes the frame that is due. How long to sleep until the next is, ns: a few ms at most, as time may be simulated.
   std::int64_t MakeFrameIfDue();
   void MakeFrame(std::int64_t input_end_ns);
@@ -68,6 +74,13 @@ class SimulatorRos {
   bool OnStep(Step::Request& request, Step::Response& response);
   bool OnLoadScene(LoadScene::Request& request, LoadScene::Response& response);
   bool OnSaveSurface(SaveSurface::Request& request, SaveSurface::Response& response);
+
+  // Changes at run time (simulator_reconfigure.cpp).
+  void StartReconfigure();
+  /// Takes what the scene has parts for, and says in `config` what was taken.
+  void OnReconfigure(SimulatorConfig* config);
+  /// After a scene was loaded: its values, blades on.
+  void ShowTuning();
 
   // Once a second (simulator_diagnostics.cpp).
   void EverySecond();
@@ -102,6 +115,8 @@ class SimulatorRos {
 
   std::unique_ptr<Publishers> publishers_;
   std::vector<ros::ServiceServer> services_;
+  boost::recursive_mutex reconfigure_mutex_;
+  std::unique_ptr<dynamic_reconfigure::Server<SimulatorConfig>> reconfigure_;
   std::unique_ptr<ros::AsyncSpinner> input_spinner_, service_spinner_;
   std::thread loop_;
 };

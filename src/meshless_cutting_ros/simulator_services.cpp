@@ -24,6 +24,7 @@ void SimulatorRos::Advertise() {
 bool SimulatorRos::OnReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   InLoop([&] {
     RestartSession("reset");
+    ForgetOldSamples();
     response.message = "session " + std::to_string(session_number_);
   });
   response.success = true;
@@ -62,6 +63,7 @@ bool SimulatorRos::OnLoadScene(LoadScene::Request& request, LoadScene::Response&
     const std::string scene = request.scene.empty() ? run_.scene->file.string() : request.scene;
     Run fresh = Load(scene, 0);  // here: meanwhile the loop goes on with the old one
     InLoop([&] {
+      run_.forces->Zero(ros::Time::now());
       fresh.session->Reset(++session_number_);
       fresh.inputs->set_check_age(!paused_);
       {
@@ -71,6 +73,7 @@ bool SimulatorRos::OnLoadScene(LoadScene::Request& request, LoadScene::Response&
       monitor_.Restart();
       BeginSession();
     });
+    ShowTuning();
     response.success = true;
     response.session = session_number_;
     response.message = "session " + std::to_string(session_number_) + ": " + run_.scene->object.name + " of " + scene;

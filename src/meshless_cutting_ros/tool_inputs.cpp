@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tf_poses.h"
+#include "tool_policy.h"
 #include "topics.h"
 
 namespace meshless_cutting {
@@ -23,9 +24,11 @@ std::int64_t Now() { return static_cast<std::int64_t>(ros::Time::now().toNSec())
 struct ToolInputs::Box {
   std::deque<PoseSample> poses;
   std::deque<EdgeSample> edges;
+  std::deque<ButtonSample> buttons;
   std::int64_t newest_tf_ns = -1;
   ReceiptStamps receipt_stamps;
   std::optional<ros::SteadyTime> received;
+  bool silence_told = false;
 };
 
 std::string SourceName(const ros::NodeHandle& nh, const ToolConfig& config) {
@@ -37,6 +40,7 @@ std::string SourceName(const ros::NodeHandle& nh, const ToolConfig& config) {
 ToolInputs::ToolInputs(const ros::NodeHandle& nh, const Scene& scene, InputReports reports)
     : nh_(nh),
       scene_frame_(scene.frame),
+      tools_(scene.tools),
       reports_(std::move(reports)),
       boxes_(scene.tools.size()),
       tf_frames_(scene.tools.size()) {
@@ -46,6 +50,7 @@ ToolInputs::ToolInputs(const ros::NodeHandle& nh, const Scene& scene, InputRepor
 ToolInputs::~ToolInputs() {
   pose_topics_.clear();
   edge_subscribers_.clear();
+  button_subscribers_.clear();
   tf_changed_.disconnect();
 }
 
@@ -61,6 +66,12 @@ void ToolInputs::Subscribe(int tool, const ToolConfig& config) {
         config.name + "/" + kEdgeTopic, 100,
         [this, tool](const geometry_msgs::PolygonStamped::ConstPtr& edge) { ReceiveEdge(tool, *edge); },
         ros::VoidConstPtr(), kTransport));
+  }
+  if (config.blade_button) {
+    button_subscribers_.push_back(nh_.subscribe<sensor_msgs::Joy>(
+        config.blade_button->topic, 100,
+        [this, tool](const sensor_msgs::Joy::ConstPtr& joy) { ReceiveButton(tool, *joy); }, ros::VoidConstPtr(),
+        kTransport));
   }
 }
 
@@ -82,6 +93,22 @@ void ToolInputs::Refresh() {
       topic.subscriber = SubscribeToPoses(topic.tool, topic.name);
     }
     topic.had_publisher = has_publisher;
+  }
+  if (check_age_) ReportSilence();
+}
+
+void ToolInputs::ReportSilence() {
+  for (int tool = 0; tool < static_cast<int>(tools_.size()); ++tool) {
+    const auto age = Age(tool);
+    if (!age || *age <= tools_[tool].timeout_s) continue;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (std::exchange(boxes_[tool].silence_told, true)) continue;
+    }
+    std::ostringstream value;
+    value.precision(3);
+    value << *age << " s ago, timeout_s " << tools_[tool].timeout_s;
+    reports_[tool]->Count(InputFault::kStale, value.str());
   }
 }
 
@@ -111,6 +138,7 @@ void ToolInputs::TfChanged() {
 
 void ToolInputs::Receive(int tool, PoseSample sample) {
   const std::int64_t now = Now();
+  ApplyPolicy(tools_[tool], &sample);
   if (sample.stamp_ns == 0) {
     const std::lock_guard<std::mutex> lock(mutex_);
     sample.stamp_ns = boxes_[tool].receipt_stamps.Next(now);
@@ -128,9 +156,11 @@ void ToolInputs::Receive(int tool, PoseSample sample) {
   if (foreign && !ExpressIn(scene_frame_, Tf(), &sample)) {
     return report.Count(InputFault::kUnknownFrame, "frame `" + sample.frame + "`, scene frame `" + scene_frame_ + "`");
   }
+  ReportOddities(sample, &report);
   const std::lock_guard<std::mutex> lock(mutex_);
   Box& box = boxes_[tool];
   box.received = ros::SteadyTime::now();
+  box.silence_told = false;
   if (box.poses.size() >= static_cast<std::size_t>(kInputQueue)) {
     box.poses.pop_front();
     report.Count(InputFault::kOverflow, std::to_string(kInputQueue) + " samples wait");
@@ -147,11 +177,25 @@ void ToolInputs::ReceiveEdge(int tool, const geometry_msgs::PolygonStamped& edge
   box.edges.push_back(std::move(sample));
 }
 
+void ToolInputs::ReceiveButton(int tool, const sensor_msgs::Joy& joy) {
+  const ToolConfig& config = tools_[tool];
+  const auto pressed = ReadButton(*config.blade_button, joy, reports_[tool].get());
+  if (!pressed) return;
+  const bool receipt = joy.header.stamp.isZero() || config.stamp_policy == StampPolicy::kReceipt;
+  const ButtonSample sample{receipt ? Now() : static_cast<std::int64_t>(joy.header.stamp.toNSec()), *pressed};
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Box& box = boxes_[tool];
+  if (box.buttons.size() >= static_cast<std::size_t>(kInputQueue)) box.buttons.pop_front();
+  box.buttons.push_back(sample);
+}
+
 void ToolInputs::HandOver(Session* session) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (int tool = 0; tool < static_cast<int>(boxes_.size()); ++tool) {
     for (const PoseSample& sample : boxes_[tool].poses) session->Add(tool, sample);
     for (EdgeSample& edge : boxes_[tool].edges) session->Add(tool, std::move(edge));
+    for (const ButtonSample& button : boxes_[tool].buttons) session->Add(tool, button);
+    boxes_[tool].buttons.clear();
     boxes_[tool].poses.clear();
     boxes_[tool].edges.clear();
   }

@@ -4,6 +4,7 @@
 
 #include <geometry_msgs/PolygonStamped.h>
 #include <ros/ros.h>
+#include <sensor_msgs/Joy.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 #include <topic_tools/shape_shifter.h>
@@ -34,7 +35,7 @@ class ToolInputs {
   /// Whether a stamp far from now is a fault: yes while frames follow the clock, no while they are stepped by hand.
   void set_check_age(bool check) { check_age_ = check; }
   /// Call once a second. A subscription takes the type of its first publisher; when that is gone any type is welcome
-  /// again.
+  /// again. A tool that fell silent is reported.
   void Refresh();
   /// Seconds since the last sample of the tool was received; nothing before the first.
   std::optional<double> Age(int tool) const;
@@ -52,11 +53,14 @@ class ToolInputs {
   ros::Subscriber SubscribeToPoses(int tool, const std::string& topic);
   void Receive(int tool, PoseSample sample);
   void ReceiveEdge(int tool, const geometry_msgs::PolygonStamped& edge);
+  void ReceiveButton(int tool, const sensor_msgs::Joy& joy);
+  void ReportSilence();
   void TfChanged();
   const tf2::BufferCore& Tf();
 
   ros::NodeHandle nh_;
   const std::string scene_frame_;
+  const std::vector<ToolConfig> tools_;
   const InputReports reports_;
   std::atomic<bool> check_age_{true};
 
@@ -71,7 +75,7 @@ class ToolInputs {
 
   // Last: gone before what their callbacks use.
   std::vector<PoseTopic> pose_topics_;
-  std::vector<ros::Subscriber> edge_subscribers_;
+  std::vector<ros::Subscriber> edge_subscribers_, button_subscribers_;
 };
 
 /// The name of a tool's source for messages: its topic resolved, "tf frame x" or "fixed".

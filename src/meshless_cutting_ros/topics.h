@@ -5,12 +5,15 @@ namespace meshless_cutting {
 
 // In, per tool: <tool>/measured_cp is named by the scene.
 inline constexpr char kEdgeTopic[] = "edge";  // <tool>/edge
+// Out, per tool whose scene has it.
+inline constexpr char kForceTopic[] = "measured_cf";  // <tool>/measured_cf
 
 // Out.
 inline constexpr char kTopologyTopic[] = "surface/topology";
 inline constexpr char kPositionsTopic[] = "surface/positions";
 inline constexpr char kCutEventsTopic[] = "cut_events";
 inline constexpr char kStatisticsTopic[] = "statistics";
+inline constexpr char kInputsTopic[] = "inputs";
 inline constexpr char kSessionTopic[] = "session";
 inline constexpr char kMarkerTopic[] = "marker";
 inline constexpr char kSurroundingsTopic[] = "surroundings";

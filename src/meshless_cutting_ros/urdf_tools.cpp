@@ -38,16 +38,35 @@ Eigen::Vector3d HalfLine(const urdf::GeometrySharedPtr& geometry) {
   return Eigen::Vector3d::Zero();
 }
 
-}  // namespace
-
-std::vector<Eigen::Vector3d> EdgeOfLink(const std::string& urdf, const std::string& link) {
+void Parse(const std::string& urdf, urdf::Model* model) {
   if (urdf.empty()) {
     throw std::runtime_error(
         "expected a robot description: set the parameter /robot_description (replay: --urdf FILE)");
   }
-  urdf::Model model;
-  if (!model.initString(urdf))
+  if (!model->initString(urdf))
     throw std::runtime_error("expected a valid URDF in the robot description; see check_urdf");
+}
+
+// Pose of a link in the root of the tree.
+Eigen::Isometry3d PoseOf(const urdf::Model& model, const std::string& name) {
+  urdf::LinkConstSharedPtr link = model.getLink(name);
+  if (!link) throw std::runtime_error("expected a link of the robot description `" + model.getName() + "`: " + name);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (; link->parent_joint; link = model.getLink(link->parent_joint->parent_link_name)) {
+    if (link->parent_joint->type != urdf::Joint::FIXED) {
+      throw std::runtime_error("expected fixed joints only between scene frame and obstacle; `" +
+                               link->parent_joint->name + "` moves");
+    }
+    pose = ToIsometry(link->parent_joint->parent_to_joint_origin_transform) * pose;
+  }
+  return pose;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> EdgeOfLink(const std::string& urdf, const std::string& link) {
+  urdf::Model model;
+  Parse(urdf, &model);
   const auto found = model.getLink(link);
   if (!found)
     throw std::runtime_error("expected the name of a link of the robot description `" + model.getName() + "`");
@@ -69,6 +88,26 @@ std::vector<Eigen::Vector3d> EdgeOfLink(const std::string& urdf, const std::stri
                              "_edge_1, ..., or with a box or cylinder as collision or visual shape");
   }
   return {T_LS * -half, T_LS * half};
+}
+
+std::vector<BoxObstacle> CollisionBoxes(const std::string& urdf, const std::string& link, const std::string& frame) {
+  urdf::Model model;
+  Parse(urdf, &model);
+  const Eigen::Isometry3d T_WL = PoseOf(model, frame).inverse() * PoseOf(model, link);
+  std::vector<BoxObstacle> boxes;
+  for (const auto& collision : model.getLink(link)->collision_array) {
+    const auto box = std::dynamic_pointer_cast<urdf::Box>(collision->geometry);
+    if (!box) {
+      throw std::runtime_error("expected boxes as collision shapes; `" + link +
+                               "` has another: put boxes around it, or give a plane or box_m in the scene");
+    }
+    BoxObstacle obstacle;
+    obstacle.half_extents = 0.5 * Eigen::Vector3d(box->dim.x, box->dim.y, box->dim.z);
+    obstacle.T_WB = T_WL * ToIsometry(collision->origin);
+    boxes.push_back(obstacle);
+  }
+  if (boxes.empty()) throw std::runtime_error("expected a link with a collision shape; `" + link + "` has none");
+  return boxes;
 }
 
 }  // namespace meshless_cutting

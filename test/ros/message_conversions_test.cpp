@@ -50,13 +50,13 @@ TEST(MessageConversionsTest, Topology) {
 TEST(MessageConversionsTest, PositionsAndHowManyAreNotFinite) {
   Surface surface = SmallSurface();
   int not_finite = -1;
-  const auto message = ToPositions(SmallScene(), surface, kTag, &not_finite);
+  const auto message = ToPositions(SmallScene(), surface, kTag, PositionEncoding::kFloat32, &not_finite);
   EXPECT_EQ(not_finite, 0);
   EXPECT_EQ(message->version, 7u);
   ASSERT_EQ(message->positions.size(), 12u);
   EXPECT_EQ(message->positions[11], 1.5f);
   surface.positions[2].y() = std::numeric_limits<double>::quiet_NaN();
-  ToPositions(SmallScene(), surface, kTag, &not_finite);
+  ToPositions(SmallScene(), surface, kTag, PositionEncoding::kFloat32, &not_finite);
   EXPECT_EQ(not_finite, 1);
 }
 

@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "messages.h"
+#include "position_encoding.h"
 #include "strokes.h"
 
 namespace meshless_cutting {
@@ -142,6 +143,32 @@ TEST_F(ReplayTest, TwoReplaysAreIdentical) {
   EXPECT_TRUE(first == Contents(folder_ / "out.bag"));
 }
 
+TEST_F(ReplayTest, WhatAReplayWroteCanBeReplayedToTheBit) {
+  WriteStroke();
+  ASSERT_EQ(Replay(Arguments()).status, 0);
+  const auto first = Contents(folder_ / "out.bag");
+  std::filesystem::rename(folder_ / "out.bag", folder_ / "recorded.bag");
+  ASSERT_EQ(Replay(Arguments("recorded.bag") + " --as-recorded").status, 0);
+  EXPECT_TRUE(first == Contents(folder_ / "out.bag"));
+}
+
+TEST_F(ReplayTest, SixteenBitsAreNearEnoughAndHalfTheSize) {
+  WriteStroke();
+  ASSERT_EQ(Replay(Arguments()).status, 0);
+  const auto exact = Read<SurfacePositions>("/simulator/surface/positions");
+  ASSERT_EQ(Replay(Arguments() + " --encoding uint16").status, 0);
+  const auto packed = Read<SurfacePositions>("/simulator/surface/positions");
+  ASSERT_EQ(exact.size(), packed.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_TRUE(packed[i]->positions.empty());
+    const std::vector<float> positions = Decode(*packed[i]);
+    ASSERT_EQ(positions.size(), exact[i]->positions.size());
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      ASSERT_NEAR(positions[k], exact[i]->positions[k], packed[i]->box_size[k % 3] / 131070 + 1e-7);
+    }
+  }
+}
+
 TEST_F(ReplayTest, TransformsOnAnotherTopicCutTheSame) {
   WriteStroke();
   ASSERT_EQ(Replay(Arguments()).status, 0);
@@ -206,6 +233,9 @@ TEST_F(ReplayTest, RefusesInOneLine) {
                 {"no poses on /a, given for tool scalpel", "/simulator/scalpel/measured_cp"});
   ExpectRefusal(Arguments() + " --speed 2", {"--speed: unknown argument"});
   ExpectRefusal("--scene a --input b", {"--output: missing"});
+  ExpectRefusal(Arguments() + " --as-recorded", {"no message on /simulator/inputs", "call ~reset once the recorder"});
+  ExpectRefusal(Arguments() + " --as-recorded --tool scalpel:=/a", {"--tool with --as-recorded: expected one of them"});
+  ExpectRefusal(Arguments() + " --encoding zip", {"--encoding: `zip`: expected float32"});
   ExpectRefusal("--scene " + BlockScene() + " --input " + (folder_ / "in.bag").string() + " --output " +
                     (folder_ / "no/such/folder/out.bag").string(),
                 {"out.bag: cannot be written; expected a path in a folder that exists"});

@@ -1,122 +1,26 @@
 // The running node, on the wall clock, with a real master.
-#include <diagnostic_msgs/DiagnosticArray.h>
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
 #include <meshless_cutting/LoadScene.h>
 #include <meshless_cutting/SaveSurface.h>
 #include <meshless_cutting/Step.h>
 #include <ros/ros.h>
 #include <std_msgs/String.h>
-#include <std_srvs/SetBool.h>
-#include <std_srvs/Trigger.h>
 #include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 #include <visualization_msgs/Marker.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
 
-#include "messages.h"
-#include "strokes.h"
+#include "simulator_fixture.h"
 
 namespace meshless_cutting {
 namespace {
-
-class SimulatorTest : public testing::Test {
- protected:
-  SimulatorTest() {
-    topology_sub_ = nh_.subscribe<SurfaceTopology>(
-        "/simulator/surface/topology", 100, [this](const SurfaceTopologyConstPtr& m) { topologies_.push_back(m); });
-    positions_sub_ = nh_.subscribe<SurfacePositions>(
-        "/simulator/surface/positions", 1000, [this](const SurfacePositionsConstPtr& m) { positions_.push_back(m); });
-    events_sub_ = nh_.subscribe<CutEvent>("/simulator/cut_events", 1000,
-                                             [this](const CutEventConstPtr& m) { events_.push_back(m); });
-    statistics_sub_ = nh_.subscribe<StepStatistics>(
-        "/simulator/statistics", 1000, [this](const StepStatisticsConstPtr& m) { statistics_.push_back(m); });
-    session_sub_ =
-        nh_.subscribe<SessionInfo>("/simulator/session", 10, [this](const SessionInfoConstPtr& m) { session_ = m; });
-    diagnostics_sub_ = nh_.subscribe<diagnostic_msgs::DiagnosticArray>(
-        "/diagnostics", 100, [this](const diagnostic_msgs::DiagnosticArray::ConstPtr& m) {
-          for (const auto& status : m->status) {
-            for (const auto& value : status.values) diagnostics_[value.key] = value.value;
-          }
-        });
-    EXPECT_TRUE(Until([this] { return session_ && !positions_.empty() && !topologies_.empty(); })) << "the node is up";
-    Reset();
-  }
-
-  // Spins until it holds, at most 20 s.
-  static bool Until(const std::function<bool()>& condition, double seconds = 20) {
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(seconds);
-    while (ros::ok() && ros::WallTime::now() < end) {
-      ros::spinOnce();
-      if (condition()) return true;
-      ros::WallDuration(0.002).sleep();
-    }
-    return false;
-  }
-
-  template <class Service>
-  Service Call(const std::string& name, const typename Service::Request& request = {}) {
-    Service service;
-    service.request = request;
-    EXPECT_TRUE(ros::service::waitForService("/simulator/" + name, 10000));
-    EXPECT_TRUE(ros::service::call("/simulator/" + name, service)) << name;
-    return service;
-  }
-
-  void Reset() {
-    const std::uint32_t before = session_ ? session_->session : 0;
-    EXPECT_TRUE(Call<std_srvs::Trigger>("reset").response.success);
-    EXPECT_TRUE(Until([&] { return session_ && session_->session > before; }));
-    Forget();
-  }
-
-  void Forget() {
-    positions_.clear();
-    topologies_.clear();
-    events_.clear();
-    statistics_.clear();
-  }
-
-  void Pause(bool pause) {
-    std_srvs::SetBool::Request request;
-    request.data = pause;
-    EXPECT_TRUE(Call<std_srvs::SetBool>("pause", request).response.success);
-  }
-
-  static bool WaitForListener(const ros::Publisher& publisher) {
-    return Until([&] { return publisher.getNumSubscribers() > 0; });
-  }
-
-  // Plays a stroke in real time.
-  template <class Message>
-  static void Play(const ros::Publisher& publisher, double x,
-                   const std::function<Message(const geometry_msgs::PoseStamped&)>& to) {
-    ASSERT_TRUE(WaitForListener(publisher));
-    for (const auto& pose : Stroke(ros::Time::now(), x)) {
-      ros::Time::sleepUntil(pose.header.stamp);
-      publisher.publish(to(pose));
-      ros::spinOnce();
-    }
-  }
-
-  int Fault(const std::string& name) const {
-    const auto found = diagnostics_.find("scalpel " + name);
-    return found == diagnostics_.end() ? 0 : std::stoi(found->second);
-  }
-
-  ros::NodeHandle nh_;
-  ros::Subscriber topology_sub_, positions_sub_, events_sub_, statistics_sub_, session_sub_, diagnostics_sub_;
-  std::vector<SurfaceTopologyConstPtr> topologies_;
-  std::vector<SurfacePositionsConstPtr> positions_;
-  std::vector<CutEventConstPtr> events_;
-  std::vector<StepStatisticsConstPtr> statistics_;
-  SessionInfoConstPtr session_;
-  std::map<std::string, std::string> diagnostics_;
-};
 
 TEST_F(SimulatorTest, PublishesEveryFrameAndTheTopologyEverySecond) {
   ASSERT_TRUE(Until([this] { return statistics_.size() > 110; })) << "two seconds of frames";
@@ -288,11 +192,54 @@ TEST_F(SimulatorTest, SavesTheSurface) {
   }
 }
 
+TEST_F(SimulatorTest, ChangesAtRunTime) {
+  const auto set = [&](double gravity_z, bool blades_on) {
+    dynamic_reconfigure::Reconfigure service;
+    dynamic_reconfigure::DoubleParameter gravity;
+    gravity.name = "gravity_z";
+    gravity.value = gravity_z;
+    dynamic_reconfigure::BoolParameter blades;
+    blades.name = "blades_on";
+    blades.value = blades_on;
+    service.request.config.doubles = {gravity};
+    service.request.config.bools = {blades};
+    EXPECT_TRUE(ros::service::call("/simulator/set_parameters", service));
+    for (const auto& value : service.response.config.doubles) {
+      if (value.name == "mass_damping_per_s") {
+        EXPECT_EQ(value.value, 1) << "the scene's";
+      }
+      if (value.name == "gravity_z") return value.value;
+    }
+    return std::nan("");
+  };
+  const auto weight = [this] { return statistics_.empty() ? 0 : statistics_.back()->gravity_j; };
+  EXPECT_TRUE(Until([&] { return weight() > 0; }));
+  EXPECT_EQ(set(0, false), 0);
+  EXPECT_TRUE(Until([&] { return weight() == 0; })) << "weightless";
+  const auto poses = nh_.advertise<geometry_msgs::PoseStamped>("/simulator/scalpel/measured_cp", 1000);
+  const auto same = [](const geometry_msgs::PoseStamped& pose) { return pose; };
+  Play<geometry_msgs::PoseStamped>(poses, 0.0773, same);
+  Until([] { return false; }, 0.3);
+  EXPECT_EQ(statistics_.back()->links_cut, 0u) << "blades are off";
+  EXPECT_EQ(set(-9.81, true), -9.81);
+  EXPECT_TRUE(Until([&] { return weight() != 0; }));
+  Play<geometry_msgs::PoseStamped>(poses, 0.0773, same);
+  EXPECT_TRUE(Until([this] { return statistics_.back()->fragments == 2; }));
+}
+
 TEST_F(SimulatorTest, DrawsOnlyForThoseWhoLook) {
   std::map<std::string, int> seen;
   const auto markers = nh_.subscribe<visualization_msgs::Marker>(
       "/simulator/marker", 100, [&](const visualization_msgs::Marker::ConstPtr& m) { ++seen[m->ns]; });
   EXPECT_TRUE(Until([&] { return seen["surface"] > 10 && seen["held"] > 0; }));
+  int tools = 0, surfaces = 0;
+  const auto surroundings = nh_.subscribe<visualization_msgs::Marker>(
+      "/simulator/surroundings", 100, [&](const visualization_msgs::Marker::ConstPtr& m) {
+        tools += m->ns == "held";
+        surfaces += m->ns == "surface";
+      });
+  EXPECT_TRUE(Until([&] { return tools > 3; }));
+  EXPECT_EQ(surfaces, 0) << "the display plugin draws it";
   int mappings = 0;
   const auto mapping = nh_.subscribe<visualization_msgs::MarkerArray>(
       "/simulator/mapping_marker", 10, [&](const visualization_msgs::MarkerArray::ConstPtr& m) {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "scene_loading.h"
 #include "tf_poses.h"
 #include "urdf_tools.h"
 
@@ -93,6 +94,52 @@ TEST(UrdfToolsTest, ShippedCellHasAScalpel) {
   const auto edge = EdgeOfLink(text.str(), "scalpel");
   ASSERT_EQ(edge.size(), 2u);
   EXPECT_TRUE(edge[1].isApprox(Eigen::Vector3d(0, 0, 0.03)));
+}
+
+constexpr char kCell[] = R"(<robot name="cell"><link name="world"/><link name="table">
+  <collision><origin xyz="0 0 -0.02"/><geometry><box size="0.8 0.6 0.04"/></geometry></collision>
+  <collision><origin xyz="0.3 0 0.1" rpy="0 0 1.5707963"/><geometry><box size="0.1 0.2 0.3"/></geometry></collision></link>
+  <joint name="j" type="fixed"><parent link="world"/><child link="table"/><origin xyz="0 0 -0.12"/></joint>
+  <link name="ball"><collision><geometry><sphere radius="1"/></geometry></collision></link>
+  <joint name="k" type="fixed"><parent link="table"/><child link="ball"/></joint>
+  <link name="arm"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><parent link="table"/><child link="arm"/><axis xyz="0 0 1"/>
+    <limit effort="1" velocity="1" lower="-1" upper="1"/></joint></robot>)";
+
+TEST(UrdfToolsTest, CollisionBoxesOfALink) {
+  const auto boxes = CollisionBoxes(kCell, "table", "world");
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_TRUE(boxes[0].half_extents.isApprox(Eigen::Vector3d(0.4, 0.3, 0.02)));
+  EXPECT_TRUE(boxes[0].T_WB.translation().isApprox(Eigen::Vector3d(0, 0, -0.14)));
+  EXPECT_TRUE((boxes[1].T_WB.linear() * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-6));
+  EXPECT_TRUE(CollisionBoxes(kCell, "table", "table")[0].T_WB.translation().isApprox(Eigen::Vector3d(0, 0, -0.02)));
+  const auto error = [](const std::string& link, const std::string& frame, const std::string& urdf = kCell) {
+    try {
+      CollisionBoxes(urdf, link, frame);
+    } catch (const std::runtime_error& caught) {
+      return std::string(caught.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(error("ball", "world").find("expected boxes as collision shapes"), std::string::npos);
+  EXPECT_NE(error("arm", "world").find("`shoulder` moves"), std::string::npos);
+  EXPECT_NE(error("world", "world").find("has none"), std::string::npos);
+  EXPECT_NE(error("table", "moon").find("expected a link of the robot description `cell`: moon"), std::string::npos);
+  EXPECT_NE(error("table", "world", "").find("expected a robot description"), std::string::npos);
+}
+
+TEST(UrdfToolsTest, TheScenesOfTheArmsFitTheirCell) {
+  std::ifstream stream(MESHLESS_CUTTING_SOURCE_DIR "/urdf/two_arm_cell.urdf");
+  std::ostringstream urdf;
+  urdf << stream.rdbuf();
+  const Scene scene = LoadSceneFile(MESHLESS_CUTTING_SOURCE_DIR "/launch/arms.yaml", urdf.str());
+  ASSERT_EQ(scene.tools.size(), 2u);
+  for (const ToolConfig& tool : scene.tools) {
+    ASSERT_EQ(tool.cutting_edge.size(), 2u) << tool.name;
+    EXPECT_NEAR((tool.cutting_edge[1] - tool.cutting_edge[0]).norm(), 0.03, 1e-12);
+  }
+  EXPECT_TRUE(scene.link_obstacles.empty());
+  EXPECT_GE(scene.obstacles.size(), 2u) << "the tray and the table of the cell";
 }
 
 }  // namespace

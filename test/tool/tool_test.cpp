@@ -116,5 +116,45 @@ TEST(Tool, BendsItsEdgeFromTheNextFrameOn) {
   EXPECT_EQ(motion[0].points_t1[1], Eigen::Vector3d(0.01, 0, 0.03));
 }
 
+// Session time is compressed when frames lag; the speed of a hand is not.
+TEST(Tool, JudgesSpeedAndSilenceByTheClockOfTheTool) {
+  ToolConfig config = Config();
+  config.max_speed_m_s = 1;
+  Tool tool(config);
+  const auto sample = [](double time_s, double measured_s, double x) {
+    ToolSample at = At(time_s, x);
+    at.measured_s = measured_s;
+    return at;
+  };
+  EXPECT_EQ(tool.Add(sample(0.001, 1.00, 0)), SampleVerdict::kAccepted);
+  EXPECT_EQ(tool.Add(sample(0.002, 1.05, 0.04)), SampleVerdict::kAccepted) << "40 m/s in session time";
+  EXPECT_EQ(tool.Add(sample(0.003, 1.10, 0.14)), SampleVerdict::kJump);
+  EXPECT_EQ(tool.Add(sample(0.004, 1.10, 0.14)), SampleVerdict::kDuplicate);
+  EXPECT_EQ(tool.Add(sample(0.005, 1.09, 0.14)), SampleVerdict::kBackInTime);
+  EXPECT_EQ(tool.Add(sample(0.006, 1.50, 0.15)), SampleVerdict::kAccepted);
+  const BladeMotion motion = tool.Move(0, 0.02);
+  // To the second sample, at the jump, and after 0.4 s of silence: only the first and the rests are windows.
+  ASSERT_EQ(motion.size(), 2u);
+  EXPECT_DOUBLE_EQ(motion[0].points_t1[0][0], 0.04);
+  EXPECT_DOUBLE_EQ(motion[1].points_t0[0][0], 0.15);
+}
+
+TEST(Tool, MovesWithoutCuttingWhileItsBladeIsOff) {
+  Tool tool(Config());
+  ToolSample off = At(0.015, 0.02);
+  off.blade_on = false;
+  tool.Add(At(0.005, 0));
+  tool.Add(At(0.010, 0.01));
+  tool.Add(off);
+  const BladeMotion motion = tool.Move(0, 0.02);
+  ASSERT_EQ(motion.size(), 1u);
+  EXPECT_DOUBLE_EQ(motion[0].points_t1[0][0], 0.01);
+  EXPECT_DOUBLE_EQ(tool.pose()->translation().x(), 0.02) << "it moved";
+  tool.Add(At(0.025, 0.03));
+  const BladeMotion again = tool.Move(0.02, 0.04);
+  ASSERT_EQ(again.size(), 1u) << "starts where it is switched on";
+  EXPECT_DOUBLE_EQ(again[0].points_t0[0][0], 0.03);
+}
+
 }  // namespace
 }  // namespace meshless_cutting

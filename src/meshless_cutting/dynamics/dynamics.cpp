@@ -100,6 +100,7 @@ struct Dynamics::Parts {
   void TissueChanged(const Tissue& tissue);
   bool IsMoving() const;
   Field& Held(const Field& y);
+  void WeighLoad(const Tissue& tissue);
   void Load(const TissueState& state);
   void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
   bool Sleeps(const Tissue& tissue, const TimeScheme& scheme);
@@ -160,14 +161,11 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
     field->resize(particles);
   }
   cell = CellOf(tissue);
-  double weight = 0, volume = 0;
-  const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
   for (int j = 0; j < particles; ++j) {
     // A particle without mass is one that all its points have left for a twin.
-    const bool is_free = !tissue.particle_fixed[j] && tissue.particle_mass[j] > 0;
-    potential.free[j] = is_free ? 1 : 0;
-    if (is_free) weight += std::pow(gravity * tissue.particle_mass[j], 2);
+    potential.free[j] = !tissue.particle_fixed[j] && tissue.particle_mass[j] > 0 ? 1 : 0;
   }
+  double volume = 0;
   for (double v : tissue.point_volume) volume += v;
   newton.TissueChanged(tissue);
   const double modulus = points.lame().lambda + 2 * points.lame().mu;
@@ -177,7 +175,17 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   driven_end.clear();
   force.clear();
   forces = 0;
-  load = std::sqrt(weight) + kForceRounding * points.lame().mu * std::pow(volume, 2.0 / 3);
+  WeighLoad(tissue);
+}
+
+void Dynamics::Parts::WeighLoad(const Tissue& tissue) {
+  const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
+  double weight = 0, volume = 0;
+  for (int j = 0; j < particles; ++j) {
+    if (potential.free[j]) weight += std::pow(gravity * tissue.particle_mass[j], 2);
+  }
+  for (double v : tissue.point_volume) volume += v;
+  load = std::sqrt(weight) + kForceRounding * points.lame().mu * std::pow(volume, 2.0 / 3) + forces;
 }
 
 void Dynamics::Parts::Load(const TissueState& state) {
@@ -445,6 +453,15 @@ void Dynamics::SetForces(const std::vector<Eigen::Vector3d>& forces) {
 }
 
 Eigen::Vector3d Dynamics::ElasticForce(int j) const { return parts_->scratch[j].vector(); }
+
+void Dynamics::Tune(const Tuning& tuning, const Tissue& tissue) {
+  Parts& p = *parts_;
+  if (p.config.gravity_m_s2) p.config.gravity_m_s2 = tuning.gravity_m_s2;
+  if (p.config.damping) p.config.damping->mass_per_s = tuning.damping.mass_per_s;
+  if (p.stiffness_damping) p.stiffness_damping->set_beta(tuning.damping.stiffness_s);
+  p.newton.set_iterations(tuning.newton_iterations);
+  p.WeighLoad(tissue);
+}
 
 AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state) {
   Parts& p = *parts_;

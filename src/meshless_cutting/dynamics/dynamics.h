@@ -32,6 +32,19 @@ struct DynamicsConfig {
   double stabilisation = 1;                      // weight of the term against zero-energy modes
 };
 
+/// What may change between two steps. A part that was not built stays absent, whatever is said of it.
+struct Tuning {
+  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();  // scene frame
+  DampingConfig damping;
+  int newton_iterations = 4;  // at most, per step
+
+  bool operator==(const Tuning& other) const {
+    return gravity_m_s2 == other.gravity_m_s2 && damping.mass_per_s == other.damping.mass_per_s &&
+           damping.stiffness_s == other.damping.stiffness_s && newton_iterations == other.newton_iterations;
+  }
+  bool operator!=(const Tuning& other) const { return !(*this == other); }
+};
+
 struct AdvanceResult {
   std::uint32_t status = kStepOk;
   int newton_iterations = 0;
@@ -49,6 +62,9 @@ class Dynamics {
 
   /// Call after the tissue changed (a cut); re-indexes, sizes buffers.
   void TissueChanged(const Tissue& tissue);
+
+  /// From the next step on. The tissue is that of the last TissueChanged().
+  void Tune(const Tuning& tuning, const Tissue& tissue);
 
   /// One time step of config.time_step_s. `skin` are the vertices that touch obstacles; unused without obstacles.
   /// Same input, same bits, whatever config.solver.threads is. Allocates nothing unless the tissue or the skin grew.

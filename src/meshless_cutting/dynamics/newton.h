@@ -18,6 +18,7 @@ class NewtonSolver {
 
   /// Before the first Minimise of a step.
   void BeginStep(const Tissue& tissue) { preconditioner_.BeginStep(tissue, potential_); }
+  void set_iterations(int iterations) { iterations_ = iterations; }
 
   /// Differences of energies that mean nothing, J.
   void SetEnergyRounding(double rounding) { energy_rounding_ = rounding; }

@@ -16,6 +16,9 @@ class StiffnessDampingTerm : public ForceTerm {
   StiffnessDampingTerm(double beta, ElasticPoints& points, ElasticTerm& elastic)
       : beta_(beta), points_(points), elastic_(elastic) {}
 
+  /// From the next step on.
+  void set_beta(double beta) { beta_ = beta; }
+
   void TissueChanged(int particles) override;
   void BeginStep(const StageMotion& motion) override;
   double Evaluate(const Field& y, Field& gradient) override;

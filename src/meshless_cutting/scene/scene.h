@@ -132,6 +132,13 @@ struct ObstacleConfig {
   double friction = 0;  // Coulomb coefficient
 };
 
+/// The collision boxes of a link of robot_description; the ROS layer puts them among the obstacles.
+struct LinkObstacle {
+  std::string link;
+  double friction = 0;  // Coulomb coefficient
+  std::string key;      // in the scene file
+};
+
 struct DampingConfig {
   double mass_per_s = 0;   // Rayleigh, proportional to mass
   double stiffness_s = 0;  // Rayleigh, proportional to stiffness
@@ -157,6 +164,28 @@ struct FixedPoseSource {
   Eigen::Isometry3d T_WT = Eigen::Isometry3d::Identity();
 };
 
+/// Which clock stamps the samples of a tool.
+enum class StampPolicy {
+  kHeader,   // that of the message; where it is 0, the time of receipt
+  kReceipt,  // the time of receipt, whatever the message says: drivers whose clock is not ours
+};
+
+/// The blade cuts only while a button of a sensor_msgs/Joy is pressed.
+struct BladeButton {
+  std::string topic;
+  int index = 0;  // of Joy.buttons
+};
+
+/// An estimate of the force on a tool, for a haptic device; see force_estimate.h.
+struct ForceConfig {
+  double toughness_j_m2 = 200;                 // work per cut face, one lip
+  std::optional<Eigen::Vector3d> flat_normal;  // of the blade's flat, unit, tool frame; absent: it has none
+  double stiffness_n_m2 = 5000;                // of the lips: force per length inside and per displacement
+  double relaxation_s = 0.3;                   // in which the lips give way
+  double max_force_n = 3;
+  double max_slope_n_s = 30;
+};
+
 struct ToolConfig {
   std::string name;
   std::vector<Eigen::Vector3d> cutting_edge;  // m, polyline in the tool frame, >= 2 points; empty when urdf_link is set
@@ -164,6 +193,33 @@ struct ToolConfig {
   std::variant<TopicPoseSource, TfPoseSource, FixedPoseSource> pose_source;
   double max_speed_m_s = 2.0;  // faster between two samples: a jump, not a motion
   double timeout_s = 0.1;      // no sample for this long: the blade is inactive
+  // How the messages of a driver are read; only with TopicPoseSource.
+  StampPolicy stamp_policy = StampPolicy::kHeader;
+  std::string frame_id;        // of the samples, instead of what their header says; empty: the header's
+  double position_scale = 1;   // units of the driver to metres
+  bool position_only = false;  // the driver's orientation is not used: the tool keeps `orientation`
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // with position_only, in the frame of the samples
+  std::optional<BladeButton> blade_button;                          // absent: the blade always cuts
+  std::optional<ForceConfig> force;                                 // absent: no force is estimated
+};
+
+/// A cut that a trainee shall make.
+struct PlannedCut {
+  std::string tool;                          // empty: any
+  std::vector<Eigen::Vector3d> points;       // m, polyline at rest, object frame
+  std::optional<Eigen::Vector3d> direction;  // deviation is seen along it, so that depth does not count; object frame
+};
+
+/// Where nothing shall be cut: a vessel, a nerve.
+struct ForbiddenZone {
+  std::string name;
+  Box box;  // at rest, object frame
+};
+
+/// What `bag_report` judges a session by; the simulation does not use it.
+struct AssessmentConfig {
+  std::vector<PlannedCut> planned;
+  std::vector<ForbiddenZone> forbidden;
 };
 
 /// The file that a configuration was read from, for messages and for the record.
@@ -185,10 +241,12 @@ struct Scene : SourceFile {
   ObjectConfig object;
   std::optional<Eigen::Vector3d> gravity_m_s2;  // scene frame
   std::vector<ObstacleConfig> obstacles;        // scene frame
+  std::vector<LinkObstacle> link_obstacles;     // empty once they are among `obstacles`
   std::optional<DampingConfig> damping;
   std::vector<ToolConfig> tools;
   std::vector<ProbeConfig> probes;
   SolverConfig solver;
+  AssessmentConfig assessment;
 };
 
 }  // namespace meshless_cutting

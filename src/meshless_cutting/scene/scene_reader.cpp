@@ -90,7 +90,8 @@ Scene ReadScene(const fs::path& file, const PackageResolver& resolver) {
   const YAML::Node tree =
       LoadYaml(file, "a scene file (YAML) that starts with `scene_version: 1`, e.g. launch/liver.yaml", &scene);
   const YamlSection top(YamlValue(tree, "", &scene), {"scene_version", "frame", "time_step_s", "object", "gravity_m_s2",
-                                                      "obstacles", "damping", "tools", "probes", "solver"});
+                                                      "obstacles", "damping", "tools", "probes", "solver",
+                                                      "assessment"});
   top.Get("scene_version").Integer(1, 1);
   if (const auto frame = top.Find("frame")) scene.frame = ReadFrameId(*frame);
   if (const auto step = top.Find("time_step_s")) scene.time_step_s = step->Number(NumberRange::Closed(0.0005, 0.1));
@@ -103,7 +104,14 @@ Scene ReadScene(const fs::path& file, const PackageResolver& resolver) {
   }
   if (const auto gravity = top.Find("gravity_m_s2")) scene.gravity_m_s2 = gravity->Vector3();
   if (const auto obstacles = top.Find("obstacles")) {
-    for (const YamlValue& item : obstacles->List()) scene.obstacles.push_back(ReadObstacle(item));
+    for (const YamlValue& item : obstacles->List()) {
+      const bool is_link = item.node().IsMap() && item.node().size() == 1 && item.node()["urdf_link"].IsDefined();
+      if (is_link) {
+        scene.link_obstacles.push_back(ReadLinkObstacle(item));
+      } else {
+        scene.obstacles.push_back(ReadObstacle(item));
+      }
+    }
   }
   if (const auto damping = top.Find("damping")) scene.damping = ReadDamping(*damping);
   if (const auto tools = top.Find("tools")) {

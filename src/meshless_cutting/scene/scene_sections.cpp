@@ -52,15 +52,19 @@ std::string ReadFrameId(const YamlValue& value) {
   return frame;
 }
 
+Eigen::Quaterniond ReadOrientation(const YamlValue& value) {
+  const std::vector<double> xyzw = value.Numbers(4, "x, y, z, w");
+  const Eigen::Quaterniond q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+  if (!(std::abs(q.norm() - 1) < 0.1)) value.Fail("a unit quaternion x, y, z, w; [0, 0, 0, 1] is no rotation");
+  return q.normalized();
+}
+
 Eigen::Isometry3d ReadPose(const YamlValue& value) {
   const YamlSection section(value, {"position_m", "orientation_xyzw"});
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (const auto position = section.Find("position_m")) pose.translation() = position->Vector3();
   if (const auto orientation = section.Find("orientation_xyzw")) {
-    const std::vector<double> xyzw = orientation->Numbers(4, "x, y, z, w");
-    const Eigen::Quaterniond q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
-    if (!(std::abs(q.norm() - 1) < 0.1)) orientation->Fail("a unit quaternion x, y, z, w; [0, 0, 0, 1] is no rotation");
-    pose.linear() = q.normalized().toRotationMatrix();
+    pose.linear() = ReadOrientation(*orientation).toRotationMatrix();
   }
   return pose;
 }
@@ -121,9 +125,9 @@ ObjectConfig ReadObject(const YamlValue& value) {
 }
 
 ObstacleConfig ReadObstacle(const YamlValue& value) {
-  const YamlSection section(value, {"plane", "box_m"});
+  const YamlSection section(value, {"plane", "box_m", "urdf_link"});
   ObstacleConfig obstacle;
-  if (section.ExactlyOneOf({"plane", "box_m"}) == "plane") {
+  if (section.ExactlyOneOf({"plane", "box_m", "urdf_link"}) == "plane") {
     const YamlSection plane(section.Get("plane"), {"point_m", "normal", "friction"});
     PlaneObstacle shape;
     shape.point = plane.Get("point_m").Vector3();
@@ -145,6 +149,12 @@ ObstacleConfig ReadObstacle(const YamlValue& value) {
   obstacle.shape = shape;
   obstacle.friction = ReadFriction(box_section);
   return obstacle;
+}
+
+LinkObstacle ReadLinkObstacle(const YamlValue& value) {
+  const YamlValue link = YamlSection(value, {"urdf_link"}).Get("urdf_link");
+  const YamlSection section(link, {"link", "friction"});
+  return {section.Get("link").Text(), ReadFriction(section), link.key()};
 }
 
 DampingConfig ReadDamping(const YamlValue& value) {

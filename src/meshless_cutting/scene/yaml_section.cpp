@@ -75,6 +75,12 @@ double YamlValue::Number(const NumberRange& range, const std::string& remedy) co
   return value;
 }
 
+bool YamlValue::Flag() const {
+  bool value = false;
+  if (!node_.IsScalar() || IsQuoted(node_) || !YAML::convert<bool>::decode(node_, value)) Fail("true or false");
+  return value;
+}
+
 int YamlValue::Integer(int min, int max) const {
   int value = 0;
   const bool is_integer = node_.IsScalar() && !IsQuoted(node_) && YAML::convert<int>::decode(node_, value);

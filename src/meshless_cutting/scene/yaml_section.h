@@ -41,6 +41,8 @@ class YamlValue {
 
   double Number(const NumberRange& range, const std::string& remedy = {}) const;
   int Integer(int min, int max) const;
+  /// true or false.
+  bool Flag() const;
   /// Not empty.
   std::string Text() const;
   Eigen::Vector3d Vector3() const;

@@ -1,6 +1,7 @@
 #include "tool/tool.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace meshless_cutting {
 
@@ -9,19 +10,22 @@ Tool::Tool(const ToolConfig& config) : config_(config), edge_(config.cutting_edg
 }
 
 SampleVerdict Tool::Add(const ToolSample& sample) {
-  if (!std::isfinite(sample.time_s) || !sample.position_m.allFinite() || !sample.orientation_xyzw.allFinite())
+  const double measured_s = sample.measured_s.value_or(sample.time_s);
+  if (!std::isfinite(sample.time_s) || !std::isfinite(measured_s) || !sample.position_m.allFinite() ||
+      !sample.orientation_xyzw.allFinite())
     return SampleVerdict::kNotFinite;
   const double norm = sample.orientation_xyzw.norm();
   if (!(norm > 1e-6)) return SampleVerdict::kZeroQuaternion;
-  if (newest_ && sample.time_s < newest_->time_s) return SampleVerdict::kBackInTime;
-  if (newest_ && sample.time_s == newest_->time_s) return SampleVerdict::kDuplicate;
+  if (newest_ && (measured_s < newest_->measured_s || sample.time_s < newest_->time_s))
+    return SampleVerdict::kBackInTime;
+  if (newest_ && measured_s == newest_->measured_s) return SampleVerdict::kDuplicate;
 
-  Queued queued{sample.time_s, Eigen::Isometry3d::Identity(), false};
+  Queued queued{sample.time_s, measured_s, Eigen::Isometry3d::Identity(), false, sample.blade_on};
   const Eigen::Vector4d q = sample.orientation_xyzw / norm;
   queued.T_WT.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
   queued.T_WT.translation() = sample.position_m;
   if (newest_) {
-    const double allowed = config_.max_speed_m_s * (queued.time_s - newest_->time_s);
+    const double allowed = config_.max_speed_m_s * (measured_s - newest_->measured_s);
     for (const Eigen::Vector3d& p : edge_)
       if ((queued.T_WT * p - newest_->T_WT * p).norm() > allowed) queued.jump = true;
   }
@@ -51,18 +55,19 @@ BladeMotion Tool::Move(double t0_s, double t1_s) {
   size_t used = 0;
   for (; used < queue_.size() && queue_[used].time_s <= t1_s; ++used) {
     const Queued& sample = queue_[used];
-    const bool stale = sample.time_s - last_sample_s_ > config_.timeout_s;
+    const bool stale = sample.measured_s - last_measured_s_ > config_.timeout_s;
     if (sample.jump) ++jumps_;
-    if (sample.jump || stale) blade_.reset();
+    if (sample.jump || stale || !sample.blade_on) blade_.reset();
     const double at = std::clamp((sample.time_s - t0_s) / (t1_s - t0_s), t, 1.0);
     if (blade_) {
       extend(at, BladeAt(sample.T_WT));
-    } else {
+    } else if (sample.blade_on) {
       blade_ = BladeAt(sample.T_WT);
       t = at;
     }
     T_WT_ = sample.T_WT;
     last_sample_s_ = sample.time_s;
+    last_measured_s_ = sample.measured_s;
   }
   queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(used));
   if (!fixed && t1_s - last_sample_s_ > config_.timeout_s) blade_.reset();

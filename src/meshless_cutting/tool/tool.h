@@ -16,6 +16,10 @@ struct ToolSample {
   double time_s = 0;  // on the clock of the session
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Vector4d orientation_xyzw = Eigen::Vector4d::UnitW();
+  // On the clock of the tool, any origin: when the simulation lags, session time is compressed and would make slow
+  // motion look like a jump. Absent: time_s.
+  std::optional<double> measured_s = std::nullopt;
+  bool blade_on = true;  // false: the tool moves, its blade does not cut
 };
 
 /// What became of a sample. Everything but kAccepted and kJump is refused and only counted; a jump re-anchors the
@@ -48,8 +52,10 @@ class Tool {
  private:
   struct Queued {
     double time_s;
+    double measured_s;
     Eigen::Isometry3d T_WT;
     bool jump;
+    bool blade_on;
   };
   std::vector<Eigen::Vector3d> BladeAt(const Eigen::Isometry3d& T_WT) const;
 
@@ -60,8 +66,9 @@ class Tool {
   std::optional<Queued> newest_;           // last accepted sample, for the screening
   std::optional<Eigen::Isometry3d> T_WT_;  // at the end of the last frame
   std::optional<std::vector<Eigen::Vector3d>>
-      blade_;  // polyline at the end of the last frame while active, scene frame
-  double last_sample_s_ = 0;
+      blade_;                   // polyline at the end of the last frame while active, scene frame
+  double last_sample_s_ = 0;    // session time
+  double last_measured_s_ = 0;  // clock of the tool
   int jumps_ = 0;
 };
 

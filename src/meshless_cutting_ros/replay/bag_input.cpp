@@ -4,7 +4,6 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <limits>
@@ -12,10 +11,10 @@
 #include <stdexcept>
 
 #include "receipt_stamps.h"
-#include "replay/bag_recovery.h"
-#include "replay/temporary_file.h"
+#include "replay/damaged_bag.h"
 #include "replay/tool_topics.h"
 #include "tf_poses.h"
+#include "tool_policy.h"
 #include "topics.h"
 
 namespace meshless_cutting {
@@ -27,6 +26,12 @@ constexpr std::int64_t kLargestLead_ns = 10000000000;
 bool IsTf(const std::string& topic) { return topic == "/tf" || topic == "tf"; }
 bool IsStaticTf(const std::string& topic) { return topic == "/tf_static" || topic == "tf_static"; }
 
+// A name of the scene as the node would resolve it.
+std::string Resolved(const std::string& simulator, const std::string& topic) {
+  if (topic.front() == '/') return topic;
+  return simulator + "/" + (topic.front() == '~' ? topic.substr(1) : topic);
+}
+
 class Reader {
  public:
   Reader(const Scene& scene, std::vector<std::string> topics, const std::string& simulator, const InputReports& reports)
@@ -37,6 +42,8 @@ class Reader {
         last_(scene.tools.size()) {
     for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
       edge_topics_.push_back(simulator + "/" + scene.tools[tool].name + "/" + kEdgeTopic);
+      const auto& button = scene.tools[tool].blade_button;
+      button_topics_.push_back(button ? Resolved(simulator, button->topic) : "");
     }
   }
 
@@ -45,12 +52,17 @@ class Reader {
     if (IsTf(topic) || IsStaticTf(topic)) ReadTf(message, IsStaticTf(topic));
     for (int tool = 0; tool < static_cast<int>(tools_.size()); ++tool) {
       if (topic == topics_[tool]) {
-        if (auto sample = PoseFromAny(message)) AddSample(tool, *sample, message.getTime());
+        if (auto sample = PoseFromAny(message)) {
+          ApplyPolicy(scene_.tools[tool], &*sample);
+          AddSample(tool, *sample, message.getTime());
+        }
       } else if (topic == edge_topics_[tool]) {
         if (const auto edge = message.instantiate<geometry_msgs::PolygonStamped>()) {
           const ros::Time stamp = edge->header.stamp.isZero() ? message.getTime() : edge->header.stamp;
           tools_[tool].edges.push_back({static_cast<std::int64_t>(stamp.toNSec()), ToPoints(edge->polygon)});
         }
+      } else if (topic == button_topics_[tool]) {
+        if (const auto joy = message.instantiate<sensor_msgs::Joy>()) AddButton(tool, *joy, message.getTime());
       }
     }
   }
@@ -78,9 +90,19 @@ class Reader {
       return reports_[tool]->Count(InputFault::kUnknownFrame,
                                    "frame `" + sample.frame + "`, scene frame `" + scene_.frame + "`");
     }
+    ReportOddities(sample, reports_[tool].get());
     last.stamp_ns = sample.stamp_ns;
     last.received_ns = received_ns;
     tools_[tool].poses.push_back(sample);
+  }
+
+  void AddButton(int tool, const sensor_msgs::Joy& joy, ros::Time received) {
+    const ToolConfig& config = scene_.tools[tool];
+    const auto pressed = ReadButton(*config.blade_button, joy, reports_[tool].get());
+    if (!pressed) return;
+    const bool receipt = joy.header.stamp.isZero() || config.stamp_policy == StampPolicy::kReceipt;
+    const ros::Time stamp = receipt ? received : joy.header.stamp;
+    tools_[tool].buttons.push_back({static_cast<std::int64_t>(stamp.toNSec()), *pressed});
   }
 
   void ReadTf(const rosbag::MessageInstance& message, bool is_static) {
@@ -99,7 +121,7 @@ class Reader {
 
   const Scene& scene_;
   const std::vector<std::string> topics_;
-  std::vector<std::string> edge_topics_;
+  std::vector<std::string> edge_topics_, button_topics_;
   const InputReports& reports_;
   tf2::BufferCore tf_;
   std::vector<ToolRecording> tools_;
@@ -139,36 +161,15 @@ BagInput ReadWholeBag(const std::string& file, const std::string& name, const Sc
   return input;
 }
 
-std::string Loss(const std::string& name, const BagRecovery& recovery) {
-  return name + ": damaged or not closed; used the " + std::to_string(recovery.messages) +
-         " messages that could be read, lost the last " + std::to_string(recovery.bytes_lost) + " of " +
-         std::to_string(recovery.bytes_total) + " bytes";
-}
-
 }  // namespace
 
 BagInput ReadBag(const std::filesystem::path& bag, const Scene& scene, const TopicChoice& choice,
                  const InputReports& reports) {
-  const std::string name = bag.string();
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(bag, error)) throw std::runtime_error(name + ": no such file; expected a bag");
-  try {
-    return ReadWholeBag(name, name, scene, choice, reports);
-  } catch (const rosbag::BagException&) {
-    // Not closed, cut off, or no bag at all: below.
-  }
-  const TemporaryFile copy(std::filesystem::temp_directory_path() /
-                           ("replay_recovered_" + std::to_string(getpid()) + ".bag"));
-  try {
-    const BagRecovery recovery = RecoverBag(bag, copy.path());
-    const std::string loss = Loss(name, recovery);
-    if (recovery.messages == 0) throw std::runtime_error(loss + "; expected at least one tool pose");
-    BagInput input = ReadWholeBag(copy.path().string(), name, scene, choice, reports);
-    input.loss = loss;
-    return input;
-  } catch (const rosbag::BagException& damage) {
-    throw std::runtime_error(name + ": cannot be read (" + damage.what() + "); expected a bag of `rosbag record`");
-  }
+  BagInput input;
+  const std::string loss = ReadDamagedToo(
+      bag, [&](const std::string& file) { input = ReadWholeBag(file, bag.string(), scene, choice, reports); });
+  input.loss = loss;
+  return input;
 }
 
 }  // namespace meshless_cutting

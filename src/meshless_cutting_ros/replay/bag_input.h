@@ -14,6 +14,7 @@ struct ToolRecording {
   std::string topic;              // it was read from; "tf frame x"; "fixed"
   std::vector<PoseSample> poses;  // in the order of the bag, in the scene frame, stamps not 0
   std::vector<EdgeSample> edges;
+  std::vector<ButtonSample> buttons;
 };
 
 struct BagInput {

@@ -10,13 +10,14 @@
 namespace meshless_cutting {
 
 struct ReplayOptions {
-  std::string scene;                          // path or package:// URL
-  std::string input;                          // bag with the poses of the tools
-  std::string output;                         // bag to write
-  std::map<std::string, std::string> topics;  // tool -> topic, where they are not those of the scene
-  std::string name;                           // of the simulator: prefix of topics
-  std::string urdf;                           // file; for scenes that take an edge from a link
+  std::string scene;                                       // path or package:// URL
+  std::string input;                                       // bag with the poses of the tools
+  std::string output;                                      // bag to write
+  std::map<std::string, std::string> topics;               // tool -> topic, where they are not those of the scene
+  std::string name;                                        // of the simulator: prefix of topics
+  std::string urdf;                                        // file; for scenes that take an edge from a link
   PositionEncoding encoding = PositionEncoding::kFloat32;  // of the positions written
+  bool as_recorded = false;                                // the frames of a recorded node, to the bit
   bool help = false;
 };
 
