@@ -461,6 +461,7 @@ void Dynamics::Tune(const Tuning& tuning, const Tissue& tissue) {
   if (p.stiffness_damping) p.stiffness_damping->set_beta(tuning.damping.stiffness_s);
   p.newton.set_iterations(tuning.newton_iterations);
   p.WeighLoad(tissue);
+  p.asleep = false;
 }
 
 AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin, TissueState& state) {
