@@ -259,8 +259,16 @@ void StudyRuns::Swing(const StudyCase& c, StudyRow& row) const {
                          z[n] - 0.125 * std::pow(z[n + 1] - z[n - 1], 2) / curvature);
   }
   if (troughs.size() < 2) return Fail("less than two troughs", row);
-  row.value = troughs[1].first - troughs[0].first;
-  row.reference = reference.Value("second_trough_s") - reference.Value("first_trough_s");
+  // The period between the downward passages of half the first trough: troughs themselves are moved by higher modes.
+  std::vector<double> passages;
+  const double level = 0.5 * reference.Value("first_trough_m");
+  for (std::size_t n = 1; n < z.size(); ++n) {
+    if (!(z[n - 1] > level && z[n] <= level)) continue;
+    passages.push_back((static_cast<double>(n - 1) + (level - z[n - 1]) / (z[n] - z[n - 1])) * c.time_step_s);
+  }
+  if (passages.size() < 2) return Fail("less than two passages", row);
+  row.value = passages[1] - passages[0];
+  row.reference = reference.Value("period_s");
   row.error_discretisation = std::abs(row.value / row.reference - 1);
   std::ostringstream note;
   note << "period; second trough " << 100 * (troughs[1].second / reference.Value("second_trough_m") - 1) << " % off";
