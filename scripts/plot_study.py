@@ -72,7 +72,7 @@ def deadline(axes):
 
 
 def save(figure, folder, name, header):
-    figure.text(0.01, -0.03, ' · '.join(header), fontsize=5.5, color='0.45')
+    figure.text(0.01, -0.08, ' · '.join(header), fontsize=5.5, color='0.45')
     for kind in ('svg', 'png'):
         figure.savefig(folder / f'{name}.{kind}', metadata={'Date': None} if kind == 'svg' else None)
     plt.close(figure)
@@ -89,6 +89,7 @@ def error_against_time(rows, folder, header):
         axes.set_title(title, fontsize=9)
         deadline(axes)
     panes[1].legend(loc='center left', bbox_to_anchor=(1.01, 0.5), frameon=False)
+    figure.subplots_adjust(wspace=0.28)
     save(figure, folder, 'error_against_time', header)
 
 
@@ -104,7 +105,9 @@ def convergence(rows, folder, header):
 def solver_error(rows, folder, header):
     rows = [r for r in rows if r['error_solver'] > 0 or (r['failed'] and r['problem'] == 'cantilever')]
     sweep = [r for r in rows if r['youngs_modulus_pa'] in (1e4, 1e7)]
-    figure, panes = plt.subplots(1, 2, figsize=(9, 3.6))
+    stiff = [r for r in rows if r not in sweep]
+    figure, panes = plt.subplots(1, 2 if stiff else 1, figsize=(9 if stiff else 5.2, 3.6), squeeze=False)
+    panes = panes[0]
     groups = by(sorted(sweep, key=lambda r: (r['youngs_modulus_pa'], r['poisson_ratio'], r['particles'])),
                 lambda r: (r['particles'], r['youngs_modulus_pa'], r['poisson_ratio']))
     draw(panes[0], groups, 'wall_ms_per_frame_p50', 'error_solver',
@@ -113,7 +116,9 @@ def solver_error(rows, folder, header):
     panes[0].set_title('1, 2, 4 Newton iterations at most', fontsize=9)
     deadline(panes[0])
     panes[0].legend(frameon=False, fontsize=6)
-    stiff = [r for r in rows if r not in sweep]
+    if not stiff:
+        save(figure, folder, 'solver_error', header)
+        return
     draw(panes[1], by(stiff, lambda r: r['poisson_ratio']), 'youngs_modulus_pa', 'error_solver', lambda k: f'ν {k:g}')
     panes[1].set(xscale='log', yscale='log', xlabel="Young's modulus [Pa]", ylabel='solver error, rms of the tip [%]')
     panes[1].set_title('default solver, 3,321 particles', fontsize=9)

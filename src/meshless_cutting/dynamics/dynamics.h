@@ -29,7 +29,7 @@ struct DynamicsConfig {
   std::optional<DampingConfig> damping;
   std::vector<ObstacleConfig> obstacles;  // scene frame
   std::vector<MaterialConfig> region_materials = {};  // of Tissue::point_material 1, 2, ...
-  double stabilisation = 1.5;                    // weight of the term against zero-energy modes
+  double stabilisation = 1;                      // weight of the term against zero-energy modes
 };
 
 /// What may change between two steps. A part that was not built stays absent, whatever is said of it.

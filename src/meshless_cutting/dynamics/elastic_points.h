@@ -21,7 +21,7 @@ class ElasticPoints {
  public:
   /// `pool` must outlive this.
   ElasticPoints(const MaterialConfig& material, ThreadPool& pool)
-      : ElasticPoints(std::vector<MaterialConfig>{material}, 1.5, pool) {}
+      : ElasticPoints(std::vector<MaterialConfig>{material}, 1, pool) {}
   /// One material per value of Tissue::point_material. `stabilisation`: weight of the term against zero-energy modes.
   ElasticPoints(const std::vector<MaterialConfig>& materials, double stabilisation, ThreadPool& pool);
 
