@@ -111,16 +111,19 @@ TEST(Strokes, ABladeLeftInItsCutForTenThousandFramesCutsNothingMore) {
   Simulation simulation(scene);
   LineMotion blade{{0.0613, 0.02, 0.06}, {0.0613, 0.02, 0.017}, 0.0, 0.3};
   int links = 0;
+  size_t fragments = 0;
   const int settled = 300;
   for (int step = 1; step <= settled + 10000; ++step) {
     if (step <= settled) blade.FeedUntil(simulation, 0, step * scene.time_step_s);
     simulation.Step();
-    if (step == settled) links = simulation.statistics().links_cut;
+    if (step != settled) continue;
+    links = simulation.statistics().links_cut;
+    fragments = simulation.surface().fragment_volume_m3.size();
   }
   EXPECT_FALSE(simulation.blade(0).empty());
   EXPECT_GT(links, 0);
   EXPECT_EQ(simulation.statistics().links_cut, links);
-  EXPECT_EQ(simulation.surface().fragment_volume_m3.size(), 1u);
+  EXPECT_EQ(simulation.surface().fragment_volume_m3.size(), fragments);
   ExpectAllHolds(simulation);
 }
 

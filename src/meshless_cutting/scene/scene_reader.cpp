@@ -128,6 +128,17 @@ Scene ReadScene(const fs::path& file, const PackageResolver& resolver) {
     for (const YamlValue& item : probes->List()) scene.probes.push_back(ReadProbe(item));
   }
   CheckNames(scene);
+  if (const auto assessment = top.Find("assessment")) {
+    scene.assessment = ReadAssessment(*assessment);
+    for (std::size_t i = 0; i < scene.assessment.planned.size(); ++i) {
+      const std::string& tool = scene.assessment.planned[i].tool;
+      const bool known = std::any_of(scene.tools.begin(), scene.tools.end(),
+                                     [&](const ToolConfig& config) { return config.name == tool; });
+      if (tool.empty() || known) continue;
+      throw std::runtime_error(SceneMessage(scene, "assessment.planned[" + std::to_string(i) + "].tool", tool,
+                                            "expected the name of a tool of this scene"));
+    }
+  }
   if (const auto solver = top.Find("solver")) scene.solver = ReadSolver(*solver);
   return scene;
 }
