@@ -90,9 +90,9 @@ SimulatorRos::Run SimulatorRos::Load(const std::string& scene, std::uint32_t num
   run.inputs = std::make_unique<ToolInputs>(input_nh_, *run.scene, reports);
   run.forces = std::make_unique<ForcePublisher>(nh_, *run.scene);
   const Simulation& simulation = run.session->simulation();
-  ROS_INFO("Scene %s: object %s, %zu triangles, %d particles, %d integration points, %zu tools", scene.c_str(),
+  ROS_INFO("Scene %s: object %s, %zu triangles, %d particles, %d integration points, %zu tools; %s", scene.c_str(),
            run.scene->object.name.c_str(), simulation.surface().triangles.size(), simulation.statistics().particles,
-           simulation.statistics().integration_points, run.scene->tools.size());
+           simulation.statistics().integration_points, run.scene->tools.size(), simulation.solver_summary().c_str());
   return run;
 }
 

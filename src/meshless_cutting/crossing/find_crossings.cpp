@@ -57,7 +57,12 @@ Eigen::Vector3d At(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double 
 }  // namespace
 
 CrossingFinder::CrossingFinder(const Lattice& lattice, const MaterialGraph& graph)
-    : lattice_(&lattice), graph_(&graph), vertices_(lattice.vertices.size()) {}
+    : lattice_(&lattice), graph_(&graph), vertices_(lattice.vertices.size()) {
+  for (size_t v = 0; v < lattice.vertices.size(); ++v)
+    for (const int* l = lattice.vertex_links.begin(static_cast<int>(v));
+         l != lattice.vertex_links.end(static_cast<int>(v)); ++l)
+      far_end_.push_back(lattice.links[*l][lattice.links[*l][0] == static_cast<int>(v)]);
+}
 
 CrossingFinder::Bounds CrossingFinder::BoundBlade(const BladeMotion& blade) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -121,18 +126,17 @@ std::uint8_t CrossingFinder::BlockCode(int b, const Bounds& box, const LatticeMo
   const MotionBlock& block = object.blocks().blocks()[b];
   const int *particles = object.block_particles(b), count = object.support_size();
   std::uint8_t code = kBeyondAll;
-  if (block.overshoot > 0) {
+  for (int k = 0; k < count; ++k) {
+    const int j = particles[k];
+    if (std::exchange(particle_search_[j], search_) != search_) {
+      const Eigen::Vector3d &x0 = object.particles_t0()[j], &x1 = object.particles_t1()[j];
+      particle_code_[j] = Outcode(x0.cwiseMin(x1), x0.cwiseMax(x1), box);
+    }
+    code &= particle_code_[j];
+  }
+  if (code != 0 && block.overshoot > 0) {
     const Bounds bounds = BoundParticles<Bounds>(particles, count, block.overshoot, object);
     code = Outcode(bounds.min, bounds.max, box);
-  } else {
-    for (int k = 0; k < count; ++k) {
-      const int j = particles[k];
-      if (std::exchange(particle_search_[j], search_) != search_) {
-        const Eigen::Vector3d &x0 = object.particles_t0()[j], &x1 = object.particles_t1()[j];
-        particle_code_[j] = Outcode(x0.cwiseMin(x1), x0.cwiseMax(x1), box);
-      }
-      code &= particle_code_[j];
-    }
   }
   for (int v : block.astray) {
     const Eigen::Vector3d x = object.At(v).start;
@@ -223,12 +227,11 @@ const std::vector<Crossing>& CrossingFinder::Find(const BladeMotion& blade, cons
   for (int block : near_blocks_)
     for (int a : blocks.blocks()[block].vertices) {
       const std::uint8_t code = Place(a, box, object).code;
-      for (const int* l = lattice_->vertex_links.begin(a); l != lattice_->vertex_links.end(a); ++l) {
-        const auto& ends = lattice_->links[*l];
-        const int b = ends[0] == a ? ends[1] : ends[0], other = blocks.block_of(b);
+      for (int i = lattice_->vertex_links.offsets[a]; i < lattice_->vertex_links.offsets[a + 1]; ++i) {
+        const int b = far_end_[i], other = blocks.block_of(b);
         if (block_near_[other] && b < a) continue;  // its turn comes from the other end
-        if ((code & block_code_[other]) == 0 && !graph_->IsCut(*l) && (code & Place(b, box, object).code) == 0)
-          TestLink(*l, blade);
+        if ((code & block_code_[other]) != 0 || (code & Place(b, box, object).code) != 0) continue;
+        if (const int link = lattice_->vertex_links.items[i]; !graph_->IsCut(link)) TestLink(link, blade);
       }
     }
   std::sort(found_.begin(), found_.end(), [](const Crossing& p, const Crossing& q) { return p.cut.link < q.cut.link; });

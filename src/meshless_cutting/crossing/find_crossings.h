@@ -60,6 +60,7 @@ class CrossingFinder {
   std::vector<int> near_groups_, near_blocks_;
   std::vector<std::uint8_t> particle_code_;
   std::vector<std::uint32_t> particle_search_;  // that the code was made in
+  std::vector<int> far_end_;  // per item of lattice.vertex_links: the other vertex of the link
   std::vector<MovingVertex> vertices_;
   std::uint32_t search_ = 0;
 };

@@ -21,7 +21,7 @@ struct MotionBlock {
   int group = -1;
 };
 
-/// The blocks in 3 x 3 x 3 cells of the background grid.
+/// The blocks in some 2 x 2 x 2 cells of the background grid.
 struct MotionGroup {
   std::vector<int> blocks;
   std::vector<int> particles;   // of all its blocks
