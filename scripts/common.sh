@@ -63,19 +63,21 @@ install_build_dependencies() {
   if is_noetic; then install "${NOETIC_PACKAGES[@]}"; else install "${DEBIAN_PACKAGES[@]}"; fi
 }
 
+# use FILE: sources it; a setup file of catkin would take this function's arguments for its own.
+use() {
+  local file="$1"
+  shift
+  set +u
+  # shellcheck disable=SC1090
+  source "$file"
+  set -u
+}
+
 # build [CMAKE_ARGUMENT...]
 build() {
-  if is_noetic; then
-    set +u
-    # shellcheck disable=SC1091
-    source /opt/ros/noetic/setup.bash
-    set -u
-  fi
+  if is_noetic; then use /opt/ros/noetic/setup.bash; fi
   say "Building"
   cmake -S "$SOURCE_DIR" -B "$BUILD_DIR" -DCMAKE_INSTALL_PREFIX="$SOURCE_DIR/install" "$@"
   cmake --build "$BUILD_DIR" -j"$(nproc)"
-  set +u
-  # shellcheck disable=SC1091
-  source "$SOURCE_DIR/devel/setup.bash"
-  set -u
+  use "$SOURCE_DIR/devel/setup.bash"
 }
