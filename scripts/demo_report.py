@@ -42,8 +42,10 @@ def main():
                     stroke['length'], stroke['depth'] = message.length_m, message.depth_m
                 elif message.event == SEPARATED:
                     volumes = list(message.fragment_volume_m3)
-                if message.event == ENDED:
-                    strokes.append((key, open_strokes.pop(key)))
+                if message.event == ENDED:  # carries the sums, also of what was cut before the recording began
+                    open_strokes.pop(key, None)
+                    strokes.append((key, {'links': message.links_cut, 'area': message.area_m2,
+                                          'length': message.length_m, 'depth': message.depth_m}))
     strokes += list(open_strokes.items())
     if last is None:
         raise SystemExit(arguments.bag + ': no topic ends with /statistics; expected a bag recorded from the simulator')
