@@ -1,0 +1,118 @@
+#include "dynamics/dynamics_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshless_cutting {
+namespace {
+
+/// Energies below this share of modulus times volume are nothing to worry about.
+constexpr double kEnergyFloor = 1e-3;
+
+/// Differences of energies below this share of modulus times volume are rounding.
+constexpr double kEnergyRounding = 1e-15;
+
+/// Forces below this share of (shear modulus) (cross section of the object) are rounding.
+constexpr double kForceRounding = 1e-8;
+
+std::vector<MaterialConfig> MaterialsOf(const DynamicsConfig& config) {
+  std::vector<MaterialConfig> materials{config.material};
+  materials.insert(materials.end(), config.region_materials.begin(), config.region_materials.end());
+  return materials;
+}
+
+/// Edge of the largest cell: the grid's, of which many are full.
+double CellOf(const Tissue& tissue) {
+  double volume = 0;
+  for (double v : tissue.point_volume) volume = std::max(volume, v);
+  return std::cbrt(volume);
+}
+
+ContactScale ContactScaleOf(const DynamicsConfig& config, const Tissue& tissue, const LameConstants& lame) {
+  ContactScale scale;
+  scale.modulus_pa = lame.lambda + 2 * lame.mu;
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3d& X : tissue.particle_rest) bounds.extend(X);
+  scale.cell_m = CellOf(tissue);
+  const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
+  scale.own_pressure_pa = config.material.density_kg_m3 * gravity * bounds.sizes().maxCoeff();
+  return scale;
+}
+
+SolverChoice ChooseSolverFor(const DynamicsConfig& config, const Tissue& tissue, const LameConstants& stiffest,
+                             double contact_stiffness) {
+  SolverSituation situation;
+  situation.cell_m = CellOf(tissue);
+  situation.p_wave_modulus_pa = stiffest.lambda + 2 * stiffest.mu;
+  situation.density_kg_m3 = config.material.density_kg_m3;
+  for (const MaterialConfig& material : config.region_materials) {
+    situation.density_kg_m3 = std::min(situation.density_kg_m3, material.density_kg_m3);
+  }
+  situation.stiffness_damping_s = config.damping ? config.damping->stiffness_s : 0;
+  situation.step_s = config.time_step_s / config.solver.sub_steps;
+  situation.contact_ratio = contact_stiffness * situation.cell_m / situation.p_wave_modulus_pa;
+  return ChooseSolver(config.solver, situation);
+}
+
+}  // namespace
+
+Dynamics::Parts::Parts(const DynamicsConfig& config_, const Tissue& tissue)
+    : config(config_),
+      pool(config.solver.threads),
+      points(MaterialsOf(config), config.stabilisation, pool),
+      elastic(points),
+      potential(elastic, terms, pool),
+      newton(potential, config.solver.relative_tolerance, config.solver.newton_iterations) {
+  if (!config.obstacles.empty()) {
+    terms.push_back(&contact.emplace(config.obstacles, ContactScaleOf(config, tissue, points.lame())));
+  }
+  choice = ChooseSolverFor(config, tissue, points.lame(), contact ? contact->stiffness_per_area() : 0);
+  if (choice.integrator == Integrator::kExplicit) {
+    explicit_steps.emplace(points, terms, potential);
+  } else if (config.damping && config.damping->stiffness_s > 0) {
+    terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points, elastic));
+  }
+}
+
+void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
+  particles = tissue.particle_count();
+  skin_changed = true;
+  asleep = false;
+  points.TissueChanged(tissue);
+  elastic.TissueChanged();
+  for (ForceTerm* term : terms) term->TissueChanged(particles);
+  fragments.Build(tissue);
+  potential.Resize(particles);
+  for (Field* field : {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration,
+                       &end_position, &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch}) {
+    field->resize(particles);
+  }
+  cell = CellOf(tissue);
+  for (int j = 0; j < particles; ++j) {
+    // A particle without mass is one that all its points have left for a twin.
+    potential.free[j] = !tissue.particle_fixed[j] && tissue.particle_mass[j] > 0 ? 1 : 0;
+  }
+  double volume = 0;
+  for (double v : tissue.point_volume) volume += v;
+  newton.TissueChanged(tissue);
+  const double modulus = points.lame().lambda + 2 * points.lame().mu;
+  energy_floor = kEnergyFloor * modulus * volume;
+  newton.SetEnergyRounding(kEnergyRounding * modulus * volume);
+  driven.clear();
+  driven_end.clear();
+  force.clear();
+  forces = 0;
+  WeighLoad(tissue);
+}
+
+void Dynamics::Parts::WeighLoad(const Tissue& tissue) {
+  const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
+  double weight = 0, volume = 0;
+  for (int j = 0; j < particles; ++j) {
+    if (potential.free[j]) weight += std::pow(gravity * tissue.particle_mass[j], 2);
+  }
+  for (double v : tissue.point_volume) volume += v;
+  load = std::sqrt(weight) + kForceRounding * points.lame().mu * std::pow(volume, 2.0 / 3) + forces;
+}
+
+}  // namespace meshless_cutting

@@ -1,0 +1,103 @@
+// What the dynamics consist of and the steps in progress: the insides of Dynamics, for the files that implement it.
+//   dynamics_parts.cpp  how the parts are made, and made again after a cut
+//   dynamics_sleep.cpp  when an object is left alone
+//   dynamics_step.cpp   one step, implicit or explicit, and what is done when it goes wrong
+//   dynamics.cpp        the frame: steps, halves, the state in and out
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "dynamics/contact_term.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/elastic_term.h"
+#include "dynamics/explicit_steps.h"
+#include "dynamics/fragments.h"
+#include "dynamics/newton.h"
+#include "dynamics/solver_choice.h"
+#include "dynamics/stiffness_damping_term.h"
+#include "dynamics/time_scheme.h"
+
+namespace meshless_cutting {
+
+struct Dynamics::Parts {
+  Parts(const DynamicsConfig& config, const Tissue& tissue);
+
+  // dynamics_parts.cpp
+  void TissueChanged(const Tissue& tissue);
+  void WeighLoad(const Tissue& tissue);
+
+  // dynamics_sleep.cpp
+  /// Whether held particles move in this frame.
+  bool IsMoving() const;
+  /// Whether nothing has changed since the object fell asleep.
+  bool StillSleeps(const TissueState& state) const;
+  /// Where next to nothing moves and the forces balance without inertia, the object sleeps: it stays exactly where it
+  /// is. Only under gravity, or where all its pieces are held, or nothing moves at all: else balance may mean that it
+  /// drifts.
+  bool Sleeps(const Tissue& tissue, const TimeScheme& scheme);
+
+  // dynamics_step.cpp
+  /// One step from position, velocity, acceleration, which it replaces; false: they are as before.
+  bool Solve(const Tissue& tissue, double time_step, AdvanceResult& result);
+  /// One step into end_position, end_velocity, end_acceleration: by Newton's method, and again as implicit Euler where
+  /// a second order step ends badly.
+  bool SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
+  /// As SolveImplicit, in many small steps. False also when the energy grows: the steps were too long for what the
+  /// object has become.
+  bool SolveExplicit(const Tissue& tissue, double time_step);
+  /// One step of `scheme` from position, velocity, acceleration into those of the end.
+  NewtonSolver::Verdict Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
+  /// Sets up the step from position with the given velocities and accelerations.
+  void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
+  /// A copy of y (in scratch) with the held particles where the step wants them.
+  Field& Held(const Field& y);
+  /// Energy of motion, strain and gravity, J, at the given state. Contact has none worth counting. Its gradient by
+  /// position, without gravity, is left in scratch.
+  double EnergyOf(const Tissue& tissue, const Field& x, const Field& v);
+
+  // dynamics.cpp
+  /// The frame: `steps` equal steps from the start of the frame; false when one of them failed.
+  bool SolveSteps(const Tissue& tissue, int steps, AdvanceResult& result);
+  /// The state as the start of the frame; what of it is not finite is replaced.
+  void Load(const TissueState& state);
+  /// Position, velocity and acceleration as the state, with its energies.
+  void Store(const Tissue& tissue, TissueState& state, AdvanceResult& result);
+
+  DynamicsConfig config;
+  ThreadPool pool;
+  ElasticPoints points;
+  ElasticTerm elastic;
+  std::optional<StiffnessDampingTerm> stiffness_damping;
+  std::optional<ContactTerm> contact;
+  std::vector<ForceTerm*> terms;
+  IncrementalPotential potential;
+  NewtonSolver newton;
+  SolverChoice choice;
+  std::optional<ExplicitSteps> explicit_steps;
+  Fragments fragments;
+
+  bool asleep = false;  // all steps of the last frame were slept through
+  AdvanceResult sleeping_result;
+  int particles = 0;
+  bool skin_changed = true;
+  bool first_step = true;
+  double load = 0;          // N, what residuals are measured against besides the forces inside
+  double energy_floor = 0;  // J
+  double cell = 0;          // m, edge of a cell of the background grid
+
+  Field position, velocity, acceleration;                    // of the step in progress
+  Field start_position, start_velocity, start_acceleration;  // of the frame
+  Field end_position, end_velocity, end_acceleration;        // of the step in progress, until it is accepted
+  Field stage, steady, still, scratch;
+
+  // Scenes that move held particles, or pull: empty in others.
+  std::vector<int> driven;
+  std::vector<Eigen::Vector3d> driven_at_end;
+  Field driven_end;         // per particle, at the end of the frame; meaningful where not free
+  double driven_share = 1;  // of the way that is left to driven_end, what the step in progress goes
+  Field force;              // N per particle
+  double forces = 0;        // N, their norm
+};
+
+}  // namespace meshless_cutting

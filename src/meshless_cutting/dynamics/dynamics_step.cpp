@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/dynamics_parts.h"
+
+namespace meshless_cutting {
+namespace {
+
+/// A second order step that ends with a larger residual, or with so many times the energy that it began with (plus this
+/// share of modulus times volume), is repeated as one of implicit Euler.
+constexpr double kRoughResidual = 0.05;
+constexpr double kEnergyGrowth = 1.5;
+
+}  // namespace
+
+bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResult& result) {
+  const TimeScheme scheme(choice.integrator, time_step);
+  if (Sleeps(tissue, scheme)) {
+    result.relative_residual = newton.RelativeResidual(load);
+    return true;
+  }
+  asleep = false;
+  if (!(explicit_steps ? SolveExplicit(tissue, time_step) : SolveImplicit(tissue, scheme, result))) return false;
+  position.swap(end_position);
+  velocity.swap(end_velocity);
+  acceleration.swap(end_acceleration);
+  if (scheme.is_static()) {
+    std::fill(velocity.begin(), velocity.end(), Vector4());
+    std::fill(acceleration.begin(), acceleration.end(), Vector4());
+  }
+  return true;
+}
+
+bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
+  NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
+  if (choice.integrator == Integrator::kGeneralizedAlpha &&
+      (verdict == NewtonSolver::Verdict::kFailed || result.relative_residual > kRoughResidual ||
+       (!IsMoving() && EnergyOf(tissue, end_position, end_velocity) >
+                           kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor))) {
+    // The end of a second order step lies beyond the stage that was solved for. After violence that is no place to go.
+    verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, scheme.time_step_s()), result);
+  }
+  if (verdict == NewtonSolver::Verdict::kFailed) return false;
+  if (verdict == NewtonSolver::Verdict::kNotConverged) result.status |= kStepNotConverged;
+  for (ForceTerm* term : terms) term->EndStep(stage);
+  return true;
+}
+
+NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
+  Prepare(tissue, scheme, velocity, acceleration);
+
+  // Begin where the object already is on its way, or where it goes without forces, or where it is: the lowest. The last
+  // bounds the energy of a step whose iterations run out.
+  stage = steady;
+  double energy = newton.Start(stage);
+  if (!newton.StartIsConverged(load)) {
+    const Field* best = &steady;
+    const bool is_driven = !driven_end.empty();
+    for (const Field* guess : {&potential.target, &position}) {
+      const double other = newton.Start(is_driven ? Held(*guess) : *guess);
+      if (other < energy) {
+        energy = other;
+        best = guess;
+      }
+    }
+    stage = is_driven ? Held(*best) : *best;
+    if (best != &position) newton.Start(stage);
+  }
+  newton.BeginStep(tissue);
+  const NewtonSolver::Result solved = newton.Minimise(stage, load);
+  result.newton_iterations += solved.newton_iterations;
+  result.linear_iterations += solved.linear_iterations;
+  result.relative_residual = solved.relative_residual;
+  if (solved.verdict == NewtonSolver::Verdict::kFailed) return solved.verdict;
+
+  if (!contact || contact->IsFar()) fragments.Balance(newton.residual(), potential.inertia, stage);
+  end_position = position;
+  end_velocity = velocity;
+  end_acceleration = acceleration;
+  for (int j = 0; j < particles; ++j) {
+    if (potential.free[j] > 0) {
+      scheme.Finish(stage[j], end_position[j], end_velocity[j], end_acceleration[j]);
+    } else if (!driven_end.empty()) {
+      const Vector4 way = driven_share * (driven_end[j] - position[j]);
+      end_position[j] = position[j] + way;
+      end_velocity[j] = (1 / scheme.time_step_s()) * way;
+    }
+  }
+  return solved.verdict;
+}
+
+void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a) {
+  const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
+  const double mass_damping = config.damping ? config.damping->mass_per_s : 0;
+  const double inertia = scheme.inertia() + mass_damping * scheme.rate();
+  double reach = 0;
+  for (int j = 0; j < particles; ++j) {
+    const Vector4& x = position[j];
+    if (potential.free[j] == 0) {
+      potential.inertia[j] = 0;
+      potential.target[j] = still[j] = steady[j] = x;
+      if (!driven_end.empty()) {
+        const Vector4 way = driven_share * (driven_end[j] - x);
+        potential.target[j] = steady[j] = x + scheme.stage() * way;
+        still[j] = steady[j] - (1 / (scheme.rate() * scheme.time_step_s())) * way;
+        reach = std::max(reach, Dot(way, way));
+      }
+      continue;
+    }
+    potential.inertia[j] = tissue.particle_mass[j] * inertia;
+    still[j] = scheme.Still(x, v[j], a[j]);
+    steady[j] = scheme.Steady(x, v[j], a[j]);
+    // Gravity and damping proportional to mass are inertia with another target.
+    potential.target[j] = x + (scheme.inertia() / inertia) * (scheme.Target(x, v[j], a[j]) - x) +
+                          (1 / inertia) * gravity + (mass_damping * scheme.rate() / inertia) * (still[j] - x);
+    if (!force.empty()) potential.target[j] += (1 / potential.inertia[j]) * force[j];
+    const Vector4 way = potential.target[j] - x;
+    reach = std::max(reach, Dot(way, way));
+  }
+  StageMotion motion;
+  motion.rate = scheme.rate();
+  motion.still = &still;
+  motion.start = &position;
+  motion.reach = 2 * std::sqrt(reach) / scheme.stage();
+  motion.stage = scheme.stage();
+  motion.step_s = scheme.time_step_s();
+  for (ForceTerm* term : terms) term->BeginStep(motion);
+}
+
+Field& Dynamics::Parts::Held(const Field& y) {
+  for (int j = 0; j < particles; ++j) scratch[j] = potential.free[j] > 0 ? y[j] : potential.target[j];
+  return scratch;
+}
+
+double Dynamics::Parts::EnergyOf(const Tissue& tissue, const Field& x, const Field& v) {
+  std::fill(scratch.begin(), scratch.end(), Vector4());
+  double energy = points.Evaluate(x, scratch);
+  const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
+  for (int j = 0; j < particles; ++j) {
+    energy += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
+    if (!force.empty()) energy -= Dot(force[j], x[j] - position[j]);
+  }
+  return energy;
+}
+
+bool Dynamics::Parts::SolveExplicit(const Tissue& tissue, double time_step) {
+  ExplicitSteps::Forces acting;
+  if (config.gravity_m_s2) acting.gravity = Vector4::From(*config.gravity_m_s2);
+  if (config.damping) acting.mass_damping = config.damping->mass_per_s;
+  if (config.damping) acting.stiffness_damping = config.damping->stiffness_s;
+  if (!force.empty()) acting.dead = &force;
+  const bool is_moving = IsMoving();
+  if (!driven_end.empty()) {
+    for (int j = 0; j < particles; ++j) stage[j] = position[j] + driven_share * (driven_end[j] - position[j]);
+    acting.held_end = &stage;
+  }
+  const int steps = choice.explicit_steps;  // as many in half the time when a frame is repeated in halves
+  end_position = position;
+  end_velocity = velocity;
+  end_acceleration = acceleration;
+  const double growth = kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor;
+  if (!explicit_steps->Run(tissue.particle_mass, acting, time_step / steps, steps, end_position, end_velocity,
+                           end_acceleration)) {
+    return false;
+  }
+  return is_moving || EnergyOf(tissue, end_position, end_velocity) <= growth;
+}
+
+}  // namespace meshless_cutting
