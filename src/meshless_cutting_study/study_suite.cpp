@@ -75,7 +75,7 @@ void AddQuick(Suite& suite) {
   suite.Balance(Case("cook", 1e5, 0.3, 0.0025), 0.03);
   suite.Balance(Case("slit_beam", 2e4, 0.45, h), 0.05);
   suite.Balance(Case("slit_block", 2e4, 0.3, 0.005), 0.05);
-  suite.Swing(Swinging(h, 1.0 / 120, Integrator::kGeneralizedAlpha), 0.025);
+  suite.Swing(Swinging(h, 1.0 / 120, Integrator::kGeneralizedAlpha), 0.01);
 }
 
 /// What says most comes first: an interrupted study is of use.

@@ -4,6 +4,14 @@
 #include <map>
 
 namespace meshless_cutting {
+namespace {
+
+/// How far inwards from the centre of a cell at the boundary its mass is lumped, in cells. 1/12 would give a thick body its exact moments
+/// of inertia (Gregory's end correction of the trapezoidal rule); with 1/16 and the default stabilisation, which is a little stiff in shear,
+/// bending, torsion and axial frequencies of the reference beam are all within 0.5 % (0: torsion -1.3 %; 1/12: +1.0 %).
+constexpr double kBoundaryShift = 1.0 / 16;
+
+}  // namespace
 
 Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points,
              const ObjectConfig& config, Tissue& tissue)
@@ -15,7 +23,28 @@ Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const Inte
   Update(all, tissue, source);
 }
 
-void Twins::FillPoint(int p, Tissue& tissue) const {
+Eigen::Vector3d Twins::CentreOfLumping(int p) const {
+  const IntegrationPoint& point = points_->points()[p];
+  const Eigen::Vector3i cell = grid_->CellCoordinates(point.cell);
+  Eigen::Vector3d beyond[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // volume joined to it behind each face
+  for (int q : points_->Neighbours(p)) {
+    const IntegrationPoint& other = points_->points()[q];
+    const Eigen::Vector3i step = grid_->CellCoordinates(other.cell) - cell;
+    if (step.cwiseAbs().sum() != 1) continue;
+    int axis = 0;
+    while (step[axis] == 0) ++axis;
+    beyond[step[axis] > 0 ? 1 : 0][axis] += other.volume;
+  }
+  Eigen::Vector3d X = grid_->CellCorner(cell) + 0.5 * grid_->spacing();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double outer[2] = {std::max(0.0, 1 - beyond[0][axis] / point.volume),
+                             std::max(0.0, 1 - beyond[1][axis] / point.volume)};
+    X[axis] += kBoundaryShift * grid_->spacing()[axis] * (outer[0] - outer[1]);
+  }
+  return X;
+}
+
+void Twins::FillPoint(int p, Tissue& tissue) {
   const int K = tissue.support_size;
   const IntegrationPoint& point = points_->points()[p];
   if (p == tissue.point_count()) {
@@ -28,6 +57,13 @@ void Twins::FillPoint(int p, Tissue& tissue) const {
     tissue.point_gradients.resize(tissue.point_gradients.size() + K);
     for (int k = 0; k < K; ++k)  // until SplitNode knows better: what it was split from
       tissue.point_particles.push_back(point.parent < 0 ? -1 : tissue.point_particles[point.parent * K + k]);
+    mass_share_.resize(mass_share_.size() + K);
+    double* share = &mass_share_[static_cast<size_t>(p) * K];
+    if (point.parent < 0) {
+      shape_->Values(point.cell, CentreOfLumping(p), share);
+    } else {
+      std::copy_n(&mass_share_[static_cast<size_t>(point.parent) * K], K, share);
+    }
   }
   tissue.point_volume[p] = point.volume;
   tissue.point_rest[p] = point.centroid;
@@ -104,7 +140,7 @@ void Twins::LumpMass(Tissue& tissue) const {
   for (int p = 0; p < tissue.point_count(); ++p) {
     const double mass = materials_.density_kg_m3(tissue.material(p)) * tissue.point_volume[p];
     for (int k = 0; k < K; ++k)
-      tissue.particle_mass[tissue.point_particles[p * K + k]] += mass * shape_->centre_values()[k];
+      tissue.particle_mass[tissue.point_particles[p * K + k]] += mass * mass_share_[static_cast<size_t>(p) * K + k];
   }
 }
 

@@ -16,8 +16,9 @@ namespace meshless_cutting {
 /// its own at that node, a twin. So every point always has its full set, moment matrices never become singular, and a
 /// cut is a re-indexing.
 ///
-/// Mass is lumped with the shape functions of the centre of a cell: the parts of a cut point add up to what the point
-/// gave to each particle, and a cut keeps mass, momentum and angular momentum to rounding.
+/// Mass is lumped with the shape functions of the centre of a cell, a little further in where the boundary is near: lumping alone makes
+/// moments of inertia too large by what a layer of h / 12 at the surface holds. Shares are those at load: the parts of a cut point add up to
+/// what the point gave to each particle, and a cut keeps mass, momentum and angular momentum to rounding.
 class Twins {
  public:
   /// Fills `tissue` at load.
@@ -30,7 +31,9 @@ class Twins {
   const std::vector<int>& Update(const std::vector<int>& changed_points, Tissue& tissue, std::vector<int>& source);
 
  private:
-  void FillPoint(int p, Tissue& tissue) const;
+  void FillPoint(int p, Tissue& tissue);
+  /// Where the mass of a point is lumped at load, m, object frame.
+  Eigen::Vector3d CentreOfLumping(int p) const;
   void SplitNode(int node, Tissue& tissue, std::vector<int>& source);
   void LumpMass(Tissue& tissue) const;
 
@@ -39,6 +42,7 @@ class Twins {
   const IntegrationPoints* points_;
   MaterialRegions materials_;
   std::vector<Box> held_;  // fixed and prescribed regions
+  std::vector<double> mass_share_;  // K per point, sum 1: of its mass, to its particles
   std::vector<int> relinked_;
   std::vector<int> member_of_;  // scratch of SplitNode: per point, -1 between calls
 };

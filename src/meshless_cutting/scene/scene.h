@@ -112,7 +112,7 @@ struct ObjectConfig {
   MaterialConfig material;
   std::vector<Box> fixed;             // object frame; empty: nothing is held
   double support_radius_cells = 0.9;  // MLS support about the centre of a cell
-  double stabilisation = 1.5;         // weight of the term against zero-energy modes
+  double stabilisation = 1.75;        // weight of the term against zero-energy modes
   std::vector<PrescribedRegion> prescribed;
   std::vector<LoadRegion> loads;
   std::vector<MaterialRegion> regions;

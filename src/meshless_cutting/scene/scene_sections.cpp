@@ -115,7 +115,7 @@ ObjectConfig ReadObject(const YamlValue& value) {
     object.support_radius_cells = support->Number({0.87, 2, false, false}, "0.9 takes the 8 particles around a cell");
   }
   if (const auto stabilisation = section.Find("stabilisation")) {
-    object.stabilisation = stabilisation->Number(NumberRange::Closed(0.01, 10), "1.5 gives the smallest errors over the reference problems");
+    object.stabilisation = stabilisation->Number(NumberRange::Closed(0.01, 10), "1.75 gives the smallest errors over the reference problems");
   }
   if (section.ExactlyOneOf({"mesh", "primitive"}) == "primitive") {
     if (const auto scale = section.Find("scale")) scale->Fail("no scale beside a primitive, whose sizes are metres");
