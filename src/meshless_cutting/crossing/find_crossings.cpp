@@ -10,6 +10,8 @@ namespace meshless_cutting {
 namespace {
 
 constexpr std::uint8_t kBeyondAll = 63;
+/// Edges of the blade that share one more box.
+constexpr size_t kEdgesTogether = 5;
 
 /// Six bits, one per side of the box [min, max] that all of [low, high] lies beyond (Cohen-Sutherland).
 template <typename Box>
@@ -42,14 +44,26 @@ Box BoundParticles(const int* particles, int count, double overshoot, const Latt
   return box;
 }
 
-/// Something apart from the box matters for its links to something else on another side. Links between it and what
-/// lies in the box are found from there.
-bool IsNear(std::uint8_t code, const std::vector<int>& neighbours, const std::vector<std::uint8_t>& codes) {
-  if (code == 0) return true;
-  for (int n : neighbours)
-    if (codes[n] != 0 && (code & codes[n]) == 0) return true;
-  return false;
+/// The code of what moves with the particles: from bounds of an earlier window where these, widened by what particles
+/// can have moved since, still lie beyond a side, else from new ones.
+template <typename Kept, typename Box>
+std::uint8_t CodeOf(Kept& kept, const int* particles, int count, double overshoot, std::uint32_t version,
+                    const Box& box, const LatticeMotion& object) {
+  auto encode = [&] {
+    const double margin = (1 + 2 * overshoot) * (object.travel() - kept.travel);
+    return Outcode(kept.bounds.min.array() - margin, kept.bounds.max.array() + margin, box);
+  };
+  if (kept.version == version) {
+    const std::uint8_t code = encode();
+    if (code != 0 || kept.travel == object.travel()) return code;
+  }
+  kept = {BoundParticles<Box>(particles, count, overshoot, object), object.travel(), version};
+  return encode();
 }
+
+/// Two things apart from the box matter for the links between them only where they lie on different sides of it. What
+/// lies in the box is near itself, and what lies apart is found from there.
+bool AreOnBothSides(std::uint8_t a, std::uint8_t b) { return a != 0 && b != 0 && (a & b) == 0; }
 
 /// (1 - t) x0 + t x1 gives x0 and x1 themselves at the ends, so windows meet in the same bits.
 Eigen::Vector3d At(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double t) { return (1 - t) * x0 + t * x1; }
@@ -57,7 +71,11 @@ Eigen::Vector3d At(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double 
 }  // namespace
 
 CrossingFinder::CrossingFinder(const Lattice& lattice, const MaterialGraph& graph)
-    : lattice_(&lattice), graph_(&graph), vertices_(lattice.vertices.size()) {
+    : lattice_(&lattice),
+      graph_(&graph),
+      vertex_code_(lattice.vertices.size()),
+      placed_(lattice.vertices.size()),
+      window_(lattice.vertices.size()) {
   for (size_t v = 0; v < lattice.vertices.size(); ++v)
     for (const int* l = lattice.vertex_links.begin(static_cast<int>(v));
          l != lattice.vertex_links.end(static_cast<int>(v)); ++l)
@@ -73,6 +91,7 @@ CrossingFinder::Bounds CrossingFinder::BoundBlade(const BladeMotion& blade) {
   };
   Bounds all = nothing;
   window_bounds_.clear();
+  stretch_bounds_.clear();
   edge_bounds_.clear();
   for (const BladeWindow& window : blade) {
     Bounds whole = nothing;
@@ -81,6 +100,8 @@ CrossingFinder::Bounds CrossingFinder::BoundBlade(const BladeMotion& blade) {
       for (const Eigen::Vector3d* p : {&window.points_t0[e + 1], &window.points_t1[e], &window.points_t1[e + 1]})
         add(edge, {*p, *p});
       edge_bounds_.push_back(edge);
+      if (e % kEdgesTogether == 0) stretch_bounds_.push_back(nothing);
+      add(stretch_bounds_.back(), edge);
       add(whole, edge);
     }
     window_bounds_.push_back(whole);
@@ -94,103 +115,105 @@ void CrossingFinder::FindNearGroups(const Bounds& box, const LatticeMotion& obje
   const auto& blocks = object.blocks().blocks();
   group_bounds_.resize(groups.size());
   group_code_.assign(groups.size(), kBeyondAll);
-  near_groups_.clear();
+  group_near_.assign(groups.size(), 0);
   for (size_t g = 0; g < groups.size(); ++g) {
     const MotionGroup& group = groups[g];
     if (group.blocks.empty()) continue;
-    GroupBounds& kept = group_bounds_[g];
-    auto encode = [&] {
-      const double margin = (1 + 2 * group.overshoot) * (object.travel() - kept.travel);
-      return Outcode(kept.bounds.min.array() - margin, kept.bounds.max.array() + margin, box);
-    };
-    std::uint8_t code = kept.version == group.version ? encode() : 0;
-    if (code == 0 && !(kept.version == group.version && kept.travel == object.travel())) {
-      kept = {BoundParticles<Bounds>(group.particles.data(), static_cast<int>(group.particles.size()), group.overshoot,
-                                     object),
-              object.travel(), group.version};
-      code = encode();
-    }
-    group_code_[g] = code;
+    group_code_[g] = CodeOf(group_bounds_[g], group.particles.data(), static_cast<int>(group.particles.size()),
+                            group.overshoot, group.version, box, object);
   }
   for (int b : object.blocks().with_astray())
     for (int v : blocks[b].astray) {
       const Eigen::Vector3d x = object.At(v).start;
       group_code_[blocks[b].group] &= Outcode(x, x, box);
     }
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (group_code_[g] == 0) group_near_[g] = 1;
+    for (int n : groups[g].later_neighbours)
+      if (AreOnBothSides(group_code_[g], group_code_[n])) group_near_[g] = group_near_[n] = 1;
+  }
+  near_groups_.clear();
   for (size_t g = 0; g < groups.size(); ++g)
-    if (!groups[g].blocks.empty() && IsNear(group_code_[g], groups[g].neighbours, group_code_))
-      near_groups_.push_back(static_cast<int>(g));
+    if (group_near_[g]) near_groups_.push_back(static_cast<int>(g));
 }
 
-std::uint8_t CrossingFinder::BlockCode(int b, const Bounds& box, const LatticeMotion& object) {
-  const MotionBlock& block = object.blocks().blocks()[b];
-  const int *particles = object.block_particles(b), count = object.support_size();
-  std::uint8_t code = kBeyondAll;
-  for (int k = 0; k < count; ++k) {
-    const int j = particles[k];
-    if (std::exchange(particle_search_[j], search_) != search_) {
-      const Eigen::Vector3d &x0 = object.particles_t0()[j], &x1 = object.particles_t1()[j];
-      particle_code_[j] = Outcode(x0.cwiseMin(x1), x0.cwiseMax(x1), box);
-    }
-    code &= particle_code_[j];
+void CrossingFinder::Encode(int b, const Bounds& box, const LatticeMotion& object) {
+  Block& block = blocks_[b];
+  block.coded = search_;
+  const MotionBlock& moving = object.blocks().blocks()[b];
+  const MotionGroup& group = object.blocks().groups()[moving.group];
+  block.code = group_code_[moving.group];
+  if (group_near_[moving.group]) {
+    block.code |= CodeOf(block.kept, object.block_particles(b), object.support_size(), moving.overshoot, group.version,
+                         box, object);
   }
-  if (code != 0 && block.overshoot > 0) {
-    const Bounds bounds = BoundParticles<Bounds>(particles, count, block.overshoot, object);
-    code = Outcode(bounds.min, bounds.max, box);
-  }
-  for (int v : block.astray) {
+  for (int v : moving.astray) {
     const Eigen::Vector3d x = object.At(v).start;
-    code &= Outcode(x, x, box);
+    block.code &= Outcode(x, x, box);
   }
-  return code;
 }
 
 void CrossingFinder::FindNearBlocks(const Bounds& box, const LatticeMotion& object) {
   const auto& blocks = object.blocks().blocks();
   const auto& groups = object.blocks().groups();
-  block_code_.resize(blocks.size());
-  for (size_t b = 0; b < blocks.size(); ++b) block_code_[b] = blocks[b].group < 0 ? kBeyondAll : group_code_[blocks[b].group];
-  particle_code_.resize(object.particles_t1().size());
-  particle_search_.resize(object.particles_t1().size(), 0);
-  for (int g : near_groups_)
-    for (int b : groups[g].blocks) block_code_[b] = BlockCode(b, box, object);
-  block_near_.assign(blocks.size(), 0);
+  blocks_.resize(blocks.size());
   near_blocks_.clear();
+  auto code_of = [&](int b) {
+    if (blocks_[b].coded != search_) Encode(b, box, object);
+    return blocks_[b].code;
+  };
   for (int g : near_groups_)
-    for (int b : groups[g].blocks)
-      if (IsNear(block_code_[b], blocks[b].neighbours, block_code_)) {
-        block_near_[b] = 1;
-        near_blocks_.push_back(b);
-      }
+    for (int b : groups[g].blocks) {
+      const std::uint8_t code = code_of(b);
+      const auto& neighbours = blocks[b].neighbours;
+      if (code != 0 &&
+          std::none_of(neighbours.begin(), neighbours.end(), [&](int n) { return AreOnBothSides(code, code_of(n)); }))
+        continue;
+      blocks_[b].near = search_;
+      near_blocks_.push_back(b);
+    }
+  // A vertex has the code of its block until it is placed.
+  auto spread = [&](int b) {
+    if (std::exchange(blocks_[b].spread, search_) == search_) return;
+    const std::uint8_t code = code_of(b);
+    for (int v : blocks[b].vertices) vertex_code_[v] = code;
+  };
+  for (int b : near_blocks_) {
+    spread(b);
+    for (int n : blocks[b].neighbours) spread(n);
+  }
 }
 
-const CrossingFinder::MovingVertex& CrossingFinder::Place(int vertex, const Bounds& box, const LatticeMotion& object) {
-  MovingVertex& moving = vertices_[vertex];
-  if (moving.search != search_) {
-    moving.search = search_;
-    moving.window = object.At(vertex);
-    const auto& [start, end] = moving.window;
-    moving.code = Outcode(start.cwiseMin(end), start.cwiseMax(end), box);
+/// Evaluates the window of a vertex, if that was not done yet, and gives it its own code.
+std::uint8_t CrossingFinder::Place(int vertex, const Bounds& box, const LatticeMotion& object) {
+  if (std::exchange(placed_[vertex], search_) != search_) {
+    const auto& [start, end] = window_[vertex] = object.At(vertex);
+    vertex_code_[vertex] = Outcode(start.cwiseMin(end), start.cwiseMax(end), box);
   }
-  return moving;
+  return vertex_code_[vertex];
 }
 
 void CrossingFinder::TestLink(int link, const BladeMotion& blade) {
-  const LatticeMotion::Window &a = vertices_[lattice_->links[link][0]].window,
-                              &b = vertices_[lattice_->links[link][1]].window;
+  const LatticeMotion::Window &a = window_[lattice_->links[link][0]], &b = window_[lattice_->links[link][1]];
   const Eigen::Vector3d low = a.start.cwiseMin(a.end).cwiseMin(b.start).cwiseMin(b.end);
   const Eigen::Vector3d high = a.start.cwiseMax(a.end).cwiseMax(b.start).cwiseMax(b.end);
-  const Bounds* edge_bounds = edge_bounds_.data();
+  const Bounds *edge_bounds = edge_bounds_.data(), *stretch_bounds = stretch_bounds_.data();
   for (size_t w = 0; w < blade.size(); ++w) {
     const BladeWindow& window = blade[w];
     const size_t edges = window.points_t0.size() - 1;
     const Bounds* bounds = std::exchange(edge_bounds, edge_bounds + edges);
+    const Bounds* stretches =
+        std::exchange(stretch_bounds, stretch_bounds + (edges + kEdgesTogether - 1) / kEdgesTogether);
     if (Outcode(low, high, window_bounds_[w]) != 0) continue;
     const MovingSegment object_edge = {At(a.start, a.end, window.t0), At(b.start, b.end, window.t0),
                                        At(a.start, a.end, window.t1), At(b.start, b.end, window.t1)};
     Crossing first;
     bool hit = false;
     for (size_t e = 0; e < edges; ++e) {
+      if (e % kEdgesTogether == 0 && Outcode(low, high, stretches[e / kEdgesTogether]) != 0) {
+        e += kEdgesTogether - 1;
+        continue;
+      }
       if (Outcode(low, high, bounds[e]) != 0) continue;
       const MovingSegment blade_edge = {window.points_t0[e], window.points_t0[e + 1], window.points_t1[e],
                                         window.points_t1[e + 1]};
@@ -226,12 +249,15 @@ const std::vector<Crossing>& CrossingFinder::Find(const BladeMotion& blade, cons
   const MotionBlocks& blocks = object.blocks();
   for (int block : near_blocks_)
     for (int a : blocks.blocks()[block].vertices) {
-      const std::uint8_t code = Place(a, box, object).code;
+      std::uint8_t code = vertex_code_[a];
       for (int i = lattice_->vertex_links.offsets[a]; i < lattice_->vertex_links.offsets[a + 1]; ++i) {
-        const int b = far_end_[i], other = blocks.block_of(b);
-        if (block_near_[other] && b < a) continue;  // its turn comes from the other end
-        if ((code & block_code_[other]) != 0 || (code & Place(b, box, object).code) != 0) continue;
-        if (const int link = lattice_->vertex_links.items[i]; !graph_->IsCut(link)) TestLink(link, blade);
+        const int b = far_end_[i];
+        if ((code & vertex_code_[b]) != 0) continue;
+        if (b < a && blocks_[blocks.block_of(b)].near == search_) continue;  // its turn comes from the other end
+        const int link = lattice_->vertex_links.items[i];
+        if (graph_->IsCut(link)) continue;
+        code = Place(a, box, object);
+        if ((code & vertex_code_[b]) == 0 && (code & Place(b, box, object)) == 0) TestLink(link, blade);
       }
     }
   std::sort(found_.begin(), found_.end(), [](const Crossing& p, const Crossing& q) { return p.cut.link < q.cut.link; });

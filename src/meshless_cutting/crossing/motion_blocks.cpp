@@ -63,8 +63,7 @@ void MotionBlocks::Connect(int vertex) {
     InsertSorted(blocks_[q].neighbours, p);
     const int g = blocks_[p].group, h = blocks_[q].group;
     if (g == h) continue;
-    InsertSorted(groups_[g].neighbours, h);
-    InsertSorted(groups_[h].neighbours, g);
+    InsertSorted(groups_[std::min(g, h)].later_neighbours, std::max(g, h));
   }
 }
 

@@ -25,7 +25,7 @@ struct MotionBlock {
 struct MotionGroup {
   std::vector<int> blocks;
   std::vector<int> particles;   // of all its blocks
-  std::vector<int> neighbours;  // groups that some lattice edge leads to, as above
+  std::vector<int> later_neighbours;  // groups of higher index that some lattice edge leads to, as above
   double overshoot = 0;         // the largest of its blocks
   std::uint32_t version = 0;    // +1 whenever blocks or particles change
 };
