@@ -34,7 +34,7 @@ struct Loop {
     points.TissueChanged(tissue);
     points.Resize(tangent);
     for (int j = 0; j < tissue.particle_count(); ++j) x[j] = Vector4::From(1.01 * tissue.particle_rest[j]);
-    points.Linearise(x, tangent);
+    points.Linearise(x, true, tangent);
   }
   void Report(benchmark::State& state) const {
     state.SetComplexityN(tissue.point_count());

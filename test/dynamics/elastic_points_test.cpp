@@ -128,7 +128,7 @@ TEST_P(ElasticPointsTest, GradientAndProductAreDerivatives) {
     points.Evaluate(x, gradient);
     PointTangent tangent;
     points.Resize(tangent);
-    points.Linearise(x, tangent);
+    points.Linearise(x, true, tangent);
     points.AddProduct(tangent, 2, d, product);
     const Field slope = Sum(plus, minus, -1);
     EXPECT_NEAR(Inner(gradient, d), (up - down) / (2 * h), 1e-5 * Inner(product, d) * h + 1e-9);
@@ -143,7 +143,7 @@ TEST_P(ElasticPointsTest, ProductIsSymmetricPositiveAndMatchesItsDiagonalAndItsC
     const Field x = Sum(Positions(Eigen::Matrix3d::Identity()), Random(1), 1e-3);
     PointTangent tangent;
     points.Resize(tangent);
-    points.Linearise(x, tangent);
+    points.Linearise(x, true, tangent);
     const auto times = [&](const Field& p) {
       Field q = Zero();
       points.AddProduct(tangent, 1, p, q);

@@ -40,9 +40,11 @@ struct Dynamics::Parts {
   // dynamics_step.cpp
   /// One step from position, velocity, acceleration, which it replaces; false: they are as before.
   bool Solve(const Tissue& tissue, double time_step, AdvanceResult& result);
-  /// One step into end_position, end_velocity, end_acceleration: by Newton's method, and again as implicit Euler where
-  /// a second order step ends badly.
+  /// One step into end_position, end_velocity, end_acceleration: by Newton's method. Where a second order step ends
+  /// badly it is made again with a more cautious scheme, and once more as implicit Euler.
   bool SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
+  /// Whether the step that ends in end_position, end_velocity must not be taken.
+  bool IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual);
   /// As SolveImplicit, in many small steps. False also when the energy grows: the steps were too long for what the
   /// object has become.
   bool SolveExplicit(const Tissue& tissue, double time_step);

@@ -41,8 +41,7 @@ KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Field& f
 }
 
 void ElasticPoints::Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const {
-  GatherSlots(ParticleRange(chunk, particles_), buffer, groups_.slot_begin.data(), groups_.slots.data(), factor,
-              to);
+  GatherSlots(ParticleRange(chunk, particles_), buffer, groups_.slot_begin.data(), groups_.slots.data(), factor, to);
 }
 
 double ElasticPoints::EvaluateInSlots(const Field& x) {
@@ -56,9 +55,8 @@ double ElasticPoints::EvaluateInSlots(const Field& x) {
 
 double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
   const double energy = EvaluateInSlots(x);
-  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    Gather(c, slots_.data(), 1, &gradient[c * kParticlesPerChunk]);
-  });
+  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk),
+                [&](int c) { Gather(c, slots_.data(), 1, &gradient[c * kParticlesPerChunk]); });
   return energy;
 }
 
@@ -69,28 +67,30 @@ void ElasticPoints::Resize(PointTangent& tangent) const {
   }
 }
 
-void ElasticPoints::Linearise(const Field& x, PointTangent& tangent) {
-  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
-                [&](int c) { kernels_[groups_.chunks[c].group].linearise(Arguments(groups_.chunks[c], x, &tangent)); });
+void ElasticPoints::Linearise(const Field& x, bool filtered, PointTangent& tangent) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    KernelArguments arguments = Arguments(groups_.chunks[c], x, &tangent);
+    arguments.filtered = filtered;
+    kernels_[groups_.chunks[c].group].linearise(arguments);
+  });
 }
 
 void ElasticPoints::ProductInSlots(const PointTangent& tangent, const Field& p) {
-  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
-    kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent));
-  });
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
+                [&](int c) { kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent)); });
 }
 
 void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q) {
   ProductInSlots(tangent, p);
-  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
-    Gather(c, slots_.data(), factor, &q[c * kParticlesPerChunk]);
-  });
+  pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk),
+                [&](int c) { Gather(c, slots_.data(), factor, &q[c * kParticlesPerChunk]); });
 }
 
 void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, BlockField& blocks) {
   static const Field kNone;
-  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
-                [&](int c) { kernels_[groups_.chunks[c].group].diagonal(Arguments(groups_.chunks[c], kNone, &tangent)); });
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    kernels_[groups_.chunks[c].group].diagonal(Arguments(groups_.chunks[c], kNone, &tangent));
+  });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
     Vector4 diagonal[kParticlesPerChunk], off_diagonal[kParticlesPerChunk];
     const ParticleRange range(c, particles_);

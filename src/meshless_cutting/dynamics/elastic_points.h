@@ -37,7 +37,8 @@ class ElasticPoints {
   double Evaluate(const Field& x, Field& gradient);
   /// Sizes a tangent for the tissue as it is; before Linearise.
   void Resize(PointTangent& tangent) const;
-  void Linearise(const Field& x, PointTangent& tangent);
+  /// filtered: made positive semidefinite.
+  void Linearise(const Field& x, bool filtered, PointTangent& tangent);
   /// q += factor tangent p.
   void AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q);
   void AddDiagonal(const PointTangent& tangent, double factor, BlockField& blocks);

@@ -16,7 +16,7 @@ class ElasticTerm {
   double tangent_factor() const { return factor_; }
 
   void TissueChanged() { points_.Resize(tangent_); }
-  void Linearise(const Field& y) { points_.Linearise(y, tangent_); }
+  void Linearise(const Field& y, bool filtered) { points_.Linearise(y, filtered, tangent_); }
   /// Energy, J, and tangent times p without the factor: sums for the particles are left in the slots.
   double EvaluateInSlots(const Field& y) { return points_.EvaluateInSlots(y); }
   void ProductInSlots(const Field& p) { points_.ProductInSlots(tangent_, p); }

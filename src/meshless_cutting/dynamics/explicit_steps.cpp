@@ -54,7 +54,7 @@ bool ExplicitSteps::Run(const std::vector<double>& mass, const Forces& forces, d
   gradient_.resize(count);
   if (forces.stiffness_damping > 0) {
     points_.Resize(tangent_);
-    points_.Linearise(x, tangent_);
+    points_.Linearise(x, true, tangent_);
   }
   Accelerate(mass, forces, x, v, step_s, a);
   for (int step = 0; step < steps; ++step) {

@@ -45,7 +45,7 @@ double IncrementalPotential::Evaluate(const Field& y, Field& gradient, Norms& no
 }
 
 void IncrementalPotential::Linearise(const Field& y) {
-  elastic_.Linearise(y);
+  elastic_.Linearise(y, true);
   for (ForceTerm* term : terms_) term->Linearise(y);
 }
 

@@ -35,6 +35,10 @@ class IncrementalPotential {
   /// Fixes the tangent H at y, positive definite on the free particles.
   void Linearise(const Field& y);
 
+  /// As Linearise, but the elastic term's tangent is the true one, which may have negative curvature. After
+  /// Linearise(y).
+  void LineariseExactly(const Field& y) { elastic_.Linearise(y, false); }
+
   /// q = H p for p that is zero where not free; returns p . q.
   double Product(const Field& p, Field& q);
 

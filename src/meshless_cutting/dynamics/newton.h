@@ -49,7 +49,10 @@ class NewtonSolver {
   bool StartIsConverged(double load) const { return std::isfinite(energy_) && RelativeResidual(load) <= tolerance_; }
 
  private:
-  int SolveLinear(double relative_tolerance);
+  /// The Newton step at y, with the exact tangent where that proves definite. Returns the linear iterations.
+  int SolveLinear(const Field& y, double relative_residual);
+  /// is_definite: false if a direction of negative curvature ended the iterations.
+  int ConjugateGradients(double relative_tolerance, bool& is_definite);
 
   IncrementalPotential& potential_;
   double tolerance_;

@@ -18,6 +18,7 @@ struct KernelArguments {
   const Vector4* field = nullptr;  // per particle: positions, m, or a direction
   double* tangent = nullptr;       // [batch][tangent_size][lane]
   Vector4* slots = nullptr;        // buffer of slots
+  bool filtered = true;            // linearise: positive semidefinite
 };
 
 /// The loops for one material law and one shape of support.
@@ -26,14 +27,14 @@ struct PointKernels {
 
   /// Energy of the points, J, strain and stabilisation; its gradient by each particle goes to the slots, N.
   double (*evaluate)(const KernelArguments&);
-  /// The positive semidefinite tangent at `field`.
+  /// The tangent at `field`, if filtered made positive semidefinite.
   void (*linearise)(const KernelArguments&);
   /// Tangent times direction into the slots, N.
   void (*product)(const KernelArguments&);
   /// The 3 x 3 blocks of the diagonal, N/m: two buffers' worth, first xx yy zz, then xy xz yz.
   void (*diagonal)(const KernelArguments&);
-  /// All blocks g_a (d2Psi / dF_ia dF_lb) h_b of one point, times its volume, for `rows` vectors g and `columns` vectors h, three
-  /// numbers each: blocks[(r columns + c) 9], row by row.
+  /// All blocks g_a (d2Psi / dF_ia dF_lb) h_b of one point, times its volume, for `rows` vectors g and `columns`
+  /// vectors h, three numbers each: blocks[(r columns + c) 9], row by row.
   void (*blocks)(const KernelArguments&, int batch, int lane, int rows, const double* g, int columns, const double* h,
                  double* blocks);
 };

@@ -208,7 +208,7 @@ void LinearisePoints(const KernelArguments& a) {
     const Support support(*a.group, batch);
     Lanes modes[Support::kModes][3], F[9], tangent[Law::kTangentSize];
     support.Gradient(a.field, modes, F);
-    law.Linearise(F, tangent, true);
+    law.Linearise(F, tangent, a.filtered);
     double* to = a.tangent + static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
     for (int i = 0; i < Law::kTangentSize; ++i) Store(tangent[i], to + i * kLanes);
   }

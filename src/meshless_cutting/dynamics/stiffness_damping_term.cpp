@@ -14,7 +14,7 @@ void StiffnessDampingTerm::BeginStep(const StageMotion& motion) {
   rate_ = motion.rate;
   elastic_.SetTangentFactor(1 + beta_ * rate_);
   still_ = motion.still;
-  points_.Linearise(*motion.start, tangent_);
+  points_.Linearise(*motion.start, true, tangent_);
 }
 
 double StiffnessDampingTerm::Evaluate(const Field& y, Field& gradient) {

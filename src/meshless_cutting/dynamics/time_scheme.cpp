@@ -8,7 +8,7 @@ constexpr double kStaticStep = 10;
 
 }  // namespace
 
-TimeScheme::TimeScheme(Integrator integrator, double time_step_s) : dt_(time_step_s) {
+TimeScheme::TimeScheme(Integrator integrator, double time_step_s, bool is_cautious) : dt_(time_step_s) {
   is_static_ = integrator == Integrator::kQuasiStatic;
   if (is_static_) dt_ = kStaticStep;
   if (is_static_ || integrator == Integrator::kImplicitEuler) {
@@ -19,6 +19,10 @@ TimeScheme::TimeScheme(Integrator integrator, double time_step_s) : dt_(time_ste
   constexpr double rho = kSpectralRadius;
   alpha_m_ = (2 * rho - 1) / (rho + 1);
   alpha_f_ = rho / (rho + 1);
+  if (is_cautious) {
+    alpha_m_ -= alpha_f_;
+    alpha_f_ = 0;
+  }
   beta_ = 0.25 * (1 - alpha_m_ + alpha_f_) * (1 - alpha_m_ + alpha_f_);
   gamma_ = 0.5 - alpha_m_ + alpha_f_;
   predict_ = 0.5 - beta_;

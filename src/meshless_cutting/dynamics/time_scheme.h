@@ -8,12 +8,15 @@ namespace meshless_cutting {
 /// Positions x, velocities v and accelerations a of the end of a step follow from
 ///   x1 = x~ + beta dt^2 a1,  x~ = x0 + dt v0 + predict dt^2 a0,   v1 = v0 + dt ((1 - gamma) a0 + gamma a1),
 /// and the balance M ((1 - alpha_m) a1 + alpha_m a0) = f(y) at the stage y = (1 - alpha_f) x1 + alpha_f x0.
-/// Chung and Hulbert 1993 (generalised-alpha): second order, spectral radius rho at infinite frequency. Since f is taken at
-/// y, not averaged, y minimises inertia() / 2 |y - target|_M^2 + Phi(y), f = -Phi', for conservative forces: what a line search needs.
-/// Integrator::kQuasiStatic is implicit Euler from rest with a step so long that inertia does not matter: each frame ends in balance.
+/// Chung and Hulbert 1993 (generalised-alpha): second order, spectral radius rho at infinite frequency. Since f is
+/// taken at y, not averaged, y minimises inertia() / 2 |y - target|_M^2 + Phi(y), f = -Phi', for conservative forces:
+/// what a line search needs. Integrator::kQuasiStatic is implicit Euler from rest with a step so long that inertia does
+/// not matter: each frame ends in balance.
 class TimeScheme {
  public:
-  TimeScheme(Integrator integrator, double time_step_s);
+  /// is_cautious: the stage is the end of the step (alpha_f = 0; Wood, Bossak and Zienkiewicz 1980): the same order and
+  /// dissipation, a little longer periods, and no end of a step beyond the state that was solved for.
+  TimeScheme(Integrator integrator, double time_step_s, bool is_cautious = false);
 
   /// rho for Integrator::kGeneralizedAlpha.
   static constexpr double kSpectralRadius = 0.8;
@@ -21,8 +24,8 @@ class TimeScheme {
   double inertia() const { return (1 - alpha_m_) / (beta_ * dt_ * dt_ * (1 - alpha_f_)); }  // 1/s^2
   double rate() const { return gamma_ / (beta_ * dt_); }  // 1/s: velocity at the stage = rate (y - Still)
   double time_step_s() const { return dt_; }
-  double stage() const { return 1 - alpha_f_; }           // the stage's place in the step
-  bool is_static() const { return is_static_; }           // velocities mean nothing
+  double stage() const { return 1 - alpha_f_; }  // the stage's place in the step
+  bool is_static() const { return is_static_; }  // velocities mean nothing
 
   // One particle, any vector type. Start of the step: x0, v0, a0.
   template <class V>

@@ -49,7 +49,7 @@ template <class T>
 /// dP = A dF + A2 (F:dF) F + B d(cof F) + B2 (cof:dF) cof; and Energy(I1, J).
 template <class Law>
 struct NeoHookeanFamily {
-  static constexpr int kTangentSize = 13;  // F, A, A2, B, B2
+  static constexpr int kTangentSize = 14;  // F, A, A2, B, B2, C
 
   template <class T>
   [[gnu::always_inline]] T Stress(const T* F, T* P) const {
@@ -69,35 +69,44 @@ struct NeoHookeanFamily {
     const T I1 = Dot9(F, F);
     const T J = F[0] * cof[0] + F[1] * cof[1] + F[2] * cof[2];
     law().Coefficients(I1, J, A, A2, B, B2);
-    if (filtered) {
-      B2 = Larger(B2, B2 - B2);
-      B = FilteredB(A, B, B2, I1, Dot9(cof, cof), J);
-    }
     for (int i = 0; i < 9; ++i) s[i] = F[i];
     s[9] = A;
     s[10] = A2;
     s[11] = B;
     s[12] = B2;
+    s[13] = J - J;
+    if (filtered) Filter(I1, Dot9(cof, cof), J, s);
   }
 
-  /// B, drawn towards zero as far as the Hessian needs it to be positive semidefinite. With the singular values sigma of F
-  /// the eigenvalues of d2J/dF2 are +-sigma_i and those of K = [0 s3 s2; s3 0 s1; s2 s1 0] (Smith et al. 2018, section 4).
-  /// * The first six ask for |B| <= A / sigma_max. sigma_max^2 is bounded by mean + sqrt(2) deviation of the eigenvalues
-  ///   of C (Samuelson's inequality), exact at rest.
-  /// * Of the 3 x 3 block A + B K + B2 c c^T, c_i = sigma_j sigma_k, at most one eigenvalue is then negative when J > 0
-  ///   (Cauchy interlacing), so that the sign of its determinant decides. It is a polynomial in the invariants.
+  /// Makes the Hessian positive semidefinite and changes it as little as is cheap. With the singular values sigma of F the
+  /// eigenvalues of d2J/dF2 are sigma_k for the twist about axis k, -sigma_k for the flip in the same plane, and those of
+  /// K = [0 s3 s2; s3 0 s1; s2 s1 0] for the stretches (Smith et al. 2018, section 4).
+  /// * Compressed, B < 0: only twists can be negative, A + B sigma_k. C |omega|^2 / 2 with omega = axial vector of the
+  ///   antisymmetric part of F^T dF, twice, is added: sigma_i + sigma_j times the twist plus sigma_i - sigma_j times the flip of a plane.
+  ///   C = -(A + B sigma_k) sigma_k / J makes the plane semidefinite: its determinant is then no less than that of sigma_i = sigma_j.
+  ///   Shear keeps its full stiffness, which a smaller |B| would take away.
+  /// * Stretched, B > 0: flips ask for B <= A / sigma_max.
+  ///   sigma_max^2 is bounded by mean + sqrt(2) deviation of the eigenvalues of C (Samuelson's inequality), exact at rest.
+  /// * Of the stretches' block A + B K + B2 c c^T, c_i = sigma_j sigma_k, at most one eigenvalue is then negative when J > 0 (K has one
+  ///   positive eigenvalue; Cauchy interlacing), so that the sign of its determinant decides. It is a polynomial in the invariants.
   /// * Where it is negative, or J <= 0: |B| <= A / (2 sigma_max), because |K| <= 2 sigma_max (Gershgorin).
   template <class T>
-  [[gnu::always_inline]] static T FilteredB(const T& A, const T& B, const T& B2, const T& I1, const T& I2, const T& J) {
+  [[gnu::always_inline]] static void Filter(const T& I1, const T& I2, const T& J, T* s) {
+    const T A = s[9], B = s[11], zero = J - J;
+    const T B2 = Larger(s[12], zero);
     const T mean = I1 * (1.0 / 3);
-    const T zero = J - J;
     const T variance = Larger((2.0 / 9) * (I1 * I1 - 3.0 * I2), zero);
-    const T limit = A / Sqrt(mean + Sqrt(2.0 * variance) + 1e-30);
-    const T b = Larger(-limit, Smaller(limit, B));
+    const T largest = Sqrt(mean + Sqrt(2.0 * variance) + 1e-30);
+    const T limit = A / largest;
+    const T b = Smaller(limit, B);
     const T det = A * (A * A - b * b * I1) + 2.0 * (b * b * b * J) + B2 * (A * A * I2 + 3.0 * (b * b * J * J) - 2.0 * (b * A * J * I1));
     const T safe = Larger(-0.5 * limit, Smaller(0.5 * limit, B));
-    const T with_det = det < -1e-12 * (A * A * A) ? safe : b;
-    return J > zero ? with_det : safe;
+    const T is_stable = det < -1e-12 * (A * A * A) ? zero : zero + 1.0;
+    const T one = J > zero ? is_stable : zero;
+    const T twist = Larger(-(A + b * largest), zero) * largest / (J > zero ? J : zero + 1.0);
+    s[11] = one > zero ? b : safe;
+    s[12] = B2;
+    s[13] = one > zero ? twist : zero;
   }
 
   template <class T>
@@ -116,6 +125,17 @@ struct NeoHookeanFamily {
         dP[i0 + j] = (A * dF[i0 + j] + a * F[i0 + j]) + (B * dcof + b * cof[i0 + j]);
       }
     }
+    T omega[3];
+    for (int n = 0; n < 3; ++n) {
+      const int i = (n + 1) % 3, j = (n + 2) % 3;
+      omega[n] = s[13] * ((F[i] * dF[j] - F[j] * dF[i]) + (F[3 + i] * dF[3 + j] - F[3 + j] * dF[3 + i]) +
+                          (F[6 + i] * dF[6 + j] - F[6 + j] * dF[6 + i]));
+    }
+    for (int i = 0; i < 9; i += 3) {
+      dP[i] += F[i + 2] * omega[1] - F[i + 1] * omega[2];
+      dP[i + 1] += F[i] * omega[2] - F[i + 2] * omega[0];
+      dP[i + 2] += F[i + 1] * omega[0] - F[i] * omega[1];
+    }
   }
 
   template <class T>
@@ -129,10 +149,13 @@ struct NeoHookeanFamily {
     Times(cof, h, ch);
     const T cross[3] = {g[1] * h[2] - g[2] * h[1], g[2] * h[0] - g[0] * h[2], g[0] * h[1] - g[1] * h[0]};
     Times(F, cross, w);
-    const T diagonal = A * (g[0] * h[0] + g[1] * h[1] + g[2] * h[2]);
+    const T gh = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
     for (int i = 0; i < 3; ++i) {
-      for (int l = 0; l < 3; ++l) block[3 * i + l] = A2 * Fg[i] * Fh[l] + B2 * cg[i] * ch[l];
-      block[4 * i] += diagonal;
+      for (int l = 0; l < 3; ++l) {
+        const T FFt = F[3 * i] * F[3 * l] + F[3 * i + 1] * F[3 * l + 1] + F[3 * i + 2] * F[3 * l + 2];
+        block[3 * i + l] = A2 * Fg[i] * Fh[l] + B2 * cg[i] * ch[l] + s[13] * (gh * FFt - Fh[i] * Fg[l]);
+      }
+      block[4 * i] += A * gh;
     }
     // d2J/dF_ia dF_lb = eps_ilm eps_abn F_mn.
     block[1] += B * w[2];
