@@ -82,6 +82,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   elastic.TissueChanged();
   for (ForceTerm* term : terms) term->TissueChanged(particles);
   fragments.Build(tissue);
+  grains.Build(tissue, fragments);
   potential.Resize(particles);
   for (Field* field : {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration,
                        &end_position, &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch}) {

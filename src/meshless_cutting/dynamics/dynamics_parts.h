@@ -13,6 +13,7 @@
 #include "dynamics/elastic_term.h"
 #include "dynamics/explicit_steps.h"
 #include "dynamics/fragments.h"
+#include "dynamics/grains.h"
 #include "dynamics/newton.h"
 #include "dynamics/solver_choice.h"
 #include "dynamics/stiffness_damping_term.h"
@@ -78,6 +79,7 @@ struct Dynamics::Parts {
   SolverChoice choice;
   std::optional<ExplicitSteps> explicit_steps;
   Fragments fragments;
+  Grains grains;
 
   bool asleep = false;  // all steps of the last frame were slept through
   AdvanceResult sleeping_result;

@@ -28,6 +28,7 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
   position.swap(end_position);
   velocity.swap(end_velocity);
   acceleration.swap(end_acceleration);
+  grains.Calm(tissue, time_step, position, velocity, acceleration);
   if (scheme.is_static()) {
     std::fill(velocity.begin(), velocity.end(), Vector4());
     std::fill(acceleration.begin(), acceleration.end(), Vector4());
