@@ -1,6 +1,9 @@
 #include "publishers.h"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <stdexcept>
 #include <utility>
 
 #include "markers.h"
@@ -37,6 +40,24 @@ Publishers::~Publishers() {
   }
   wake_.notify_all();
   thread_.join();
+}
+
+bool Publishers::HaveListeners(const std::vector<std::string>& topics) const {
+  const std::pair<const char*, const ros::Publisher*> publishers[] = {
+      {kTopologyTopic, &topology_},     {kPositionsTopic, &positions_}, {kCutEventsTopic, &cut_events_},
+      {kStatisticsTopic, &statistics_}, {kInputsTopic, &inputs_},       {kSessionTopic, &session_}};
+  bool all = true;
+  for (const std::string& topic : topics) {
+    const auto found = std::find_if(std::begin(publishers), std::end(publishers),
+                                    [&](const auto& publisher) { return topic == publisher.first; });
+    if (found == std::end(publishers)) {
+      std::string names;
+      for (const auto& publisher : publishers) names += std::string(" ") + publisher.first;
+      throw std::runtime_error("`" + topic + "`: expected topics of the simulator, of" + names);
+    }
+    all = all && found->second->getNumSubscribers() > 0;
+  }
+  return all;
 }
 
 void Publishers::Push(FrameView view) {

@@ -10,7 +10,9 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "scene_view.h"
 
@@ -21,6 +23,9 @@ class Publishers {
   /// `nh` is the private handle of the simulator. `every_second` is called once a second of wall time from the thread.
   Publishers(ros::NodeHandle nh, std::function<void()> every_second);
   ~Publishers();
+
+  /// Whether each of `topics`, names of topics.h, has a listener. Throws std::runtime_error: not a topic of the frames.
+  bool HaveListeners(const std::vector<std::string>& topics) const;
 
   /// Queues a frame. Frames are published whole and in order.
   void Push(FrameView view);

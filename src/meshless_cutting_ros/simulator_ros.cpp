@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <future>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -33,6 +35,8 @@ SimulatorRos::SimulatorRos(const ros::NodeHandle& private_nh) : nh_(private_nh),
   paused_shown_ = paused_;
   input_delay_ns_ = ToNanoseconds(nh_.param<double>(kInputDelayParameter, 0.003));
   max_lag_ns_ = ToNanoseconds(nh_.param<double>(kMaxLagParameter, 0.05));
+  std::istringstream awaited(nh_.param<std::string>(kWaitForListenersParameter, ""));
+  awaited_.assign(std::istream_iterator<std::string>(awaited), {});
   encoding_ = ParseEncoding("parameter " + nh_.resolveName(kEncodingParameter),
                             nh_.param<std::string>(kEncodingParameter, "float32"));
   run_ = Load(scene, session_number_);
@@ -43,6 +47,16 @@ SimulatorRos::SimulatorRos(const ros::NodeHandle& private_nh) : nh_(private_nh),
   updater_->add("loop", this, &SimulatorRos::DiagnoseLoop);
   updater_->add("tools", this, &SimulatorRos::DiagnoseTools);
   publishers_ = std::make_unique<Publishers>(nh_, [this] { EverySecond(); });
+  try {
+    publishers_->HaveListeners(awaited_);
+  } catch (const std::exception& error) {
+    throw std::runtime_error("parameter " + nh_.resolveName(kWaitForListenersParameter) + ": " + error.what());
+  }
+  if (awaited_.empty()) {
+    run_.inputs->Listen();
+  } else {
+    ROS_INFO("waiting for listeners, as parameter %s says", nh_.resolveName(kWaitForListenersParameter).c_str());
+  }
   Advertise();
   BeginSession();
   loop_ = std::thread([this] { Loop(); });
@@ -121,9 +135,9 @@ void SimulatorRos::Loop() {
       lock.lock();
     }
     std::int64_t sleep_ns = kLongestSleep_ns;
-    if (!paused_ && !stop_) {
+    if (!stop_) {
       lock.unlock();
-      sleep_ns = MakeFrameIfDue();
+      if (!Waits() && !paused_) sleep_ns = MakeFrameIfDue();
       lock.lock();
     }
     if (sleep_ns > 0 && commands_.empty()) command_wake_.wait_for(lock, std::chrono::nanoseconds(sleep_ns));
@@ -144,6 +158,19 @@ std::int64_t SimulatorRos::MakeFrameIfDue() {
   // frame takes all samples up to the present, so that no part of a tool's path is lost.
   MakeFrame(lag > max_lag_ns_ ? present : session.NextInputEnd());
   return 0;
+}
+
+bool SimulatorRos::Waits() {
+  if (awaited_.empty()) return false;
+  if (!publishers_->HaveListeners(awaited_)) return true;
+  awaited_.clear();
+  {
+    const std::lock_guard<std::mutex> lock(run_mutex_);
+    run_.inputs->Listen();  // not before: a player that waits for the simulator begins now
+  }
+  ROS_INFO("all listeners are there: session %u starts", session_number_);
+  BeginSession();
+  return false;
 }
 
 FrameView SimulatorRos::View(FrameMessages messages) const {

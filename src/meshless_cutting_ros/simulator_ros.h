@@ -56,6 +56,8 @@ class SimulatorRos {
   void InLoop(const std::function<void()>& command);
   void RunCommands();
   void BeginSession();
+  /// Whether the first frame still waits for listeners; starts when they are there.
+  bool Waits();
   void RestartSession(const std::string& reason);
   /// Leaves samples that came in while a session was built to the session before.
   void ForgetOldSamples();
@@ -98,6 +100,7 @@ class SimulatorRos {
   std::mutex run_mutex_;
   Run run_;
   bool paused_ = false;
+  std::vector<std::string> awaited_;  // topics without which no frame is made; empty: do not wait any more
   FrameClock clock_;
   std::int64_t last_now_ns_ = 0;
   std::uint32_t session_number_ = 1;

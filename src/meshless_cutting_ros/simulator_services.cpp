@@ -68,6 +68,7 @@ bool SimulatorRos::OnLoadScene(LoadScene::Request& request, LoadScene::Response&
       fresh.inputs->set_check_age(!paused_);
       {
         const std::lock_guard<std::mutex> lock(run_mutex_);
+        if (awaited_.empty()) fresh.inputs->Listen();
         std::swap(run_, fresh);
       }
       monitor_.Restart();

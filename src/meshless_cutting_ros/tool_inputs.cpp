@@ -43,8 +43,10 @@ ToolInputs::ToolInputs(const ros::NodeHandle& nh, const Scene& scene, InputRepor
       tools_(scene.tools),
       reports_(std::move(reports)),
       boxes_(scene.tools.size()),
-      tf_frames_(scene.tools.size()) {
-  for (int tool = 0; tool < static_cast<int>(scene.tools.size()); ++tool) Subscribe(tool, scene.tools[tool]);
+      tf_frames_(scene.tools.size()) {}
+
+void ToolInputs::Listen() {
+  for (int tool = 0; tool < static_cast<int>(tools_.size()); ++tool) Subscribe(tool, tools_[tool]);
 }
 
 ToolInputs::~ToolInputs() {
@@ -63,13 +65,13 @@ void ToolInputs::Subscribe(int tool, const ToolConfig& config) {
   }
   if (!std::holds_alternative<FixedPoseSource>(config.pose_source)) {
     edge_subscribers_.push_back(nh_.subscribe<geometry_msgs::PolygonStamped>(
-        config.name + "/" + kEdgeTopic, 100,
+        config.name + "/" + kEdgeTopic, 1000,
         [this, tool](const geometry_msgs::PolygonStamped::ConstPtr& edge) { ReceiveEdge(tool, *edge); },
         ros::VoidConstPtr(), kTransport));
   }
   if (config.blade_button) {
     button_subscribers_.push_back(nh_.subscribe<sensor_msgs::Joy>(
-        config.blade_button->topic, 100,
+        config.blade_button->topic, 1000,
         [this, tool](const sensor_msgs::Joy::ConstPtr& joy) { ReceiveButton(tool, *joy); }, ros::VoidConstPtr(),
         kTransport));
   }
@@ -77,7 +79,7 @@ void ToolInputs::Subscribe(int tool, const ToolConfig& config) {
 
 ros::Subscriber ToolInputs::SubscribeToPoses(int tool, const std::string& topic) {
   return nh_.subscribe<topic_tools::ShapeShifter>(
-      topic, 1000,
+      topic, kInputQueue,
       [this, tool](const topic_tools::ShapeShifter::ConstPtr& message) {
         if (const auto sample = PoseFromAny(*message)) return Receive(tool, *sample);
         reports_[tool]->Count(InputFault::kWrongType, message->getDataType());

@@ -23,12 +23,15 @@
 
 namespace meshless_cutting {
 
-/// Subscribes to what the tools of a scene name. Lives as long as its session.
+/// What the tools of a scene name, subscribed to by Listen(). Lives as long as its session.
 class ToolInputs {
  public:
   /// `nh` is the private handle of the simulator; its callback queue runs the callbacks.
   ToolInputs(const ros::NodeHandle& nh, const Scene& scene, InputReports reports);
   ~ToolInputs();
+
+  /// Subscribes. Once; not while another thread is in Refresh().
+  void Listen();
 
   /// Moves what came in since the last call into the session. Any thread.
   void HandOver(Session* session);

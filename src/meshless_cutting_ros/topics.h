@@ -32,6 +32,8 @@ inline constexpr char kStartPausedParameter[] = "start_paused";  // bool, false
 inline constexpr char kInputDelayParameter[] = "input_delay_s";  // a frame waits this long for the last of its samples
 inline constexpr char kMaxLagParameter[] = "max_lag_s";          // further behind than this, simulated time slips
 inline constexpr char kEncodingParameter[] = "encoding";         // of positions: float32 or uint16
+// Topics of the simulator, separated by blanks: the first frame waits until each has a listener, e.g. a recorder.
+inline constexpr char kWaitForListenersParameter[] = "wait_for_listeners";
 inline constexpr char kRobotDescriptionParameter[] = "/robot_description";
 
 // What `replay` and the players call the simulator unless told otherwise.

@@ -23,13 +23,13 @@ namespace meshless_cutting {
 namespace {
 
 constexpr char kUsage[] =
-    "usage: tool_player _path:=STROKES.yaml [_topic:=T] [_rate:=500] [_loop:=false] [_wait:=true]   plays on a topic\n"
-    "       tool_player --path STROKES.yaml --bag OUT.bag [--topic T] [--rate 500]                  writes a bag; no "
+    "usage: tool_player _path:=STROKES.yaml [_topic:=T] [_rate:=500] [_loop:=false] [_listeners:=1]   plays on a topic\n"
+    "       tool_player --path STROKES.yaml --bag OUT.bag [--topic T] [--rate 500]                    writes a bag; no "
     "master\n"
     "\n"
     "STROKES.yaml: tool_path_version: 1, frame, waypoints of {time_s, position_m, orientation_xyzw or z_axis and "
     "x_axis}.\n"
-    "The topic defaults to /simulator/scalpel/measured_cp. With _wait the path begins when somebody listens.\n";
+    "The topic defaults to /simulator/scalpel/measured_cp. The path begins when so many nodes listen.\n";
 
 geometry_msgs::PoseStamped Sample(const ToolPath& path, double path_s, ros::Time stamp) {
   geometry_msgs::PoseStamped message;
@@ -89,10 +89,9 @@ int RunAsNode() {
   const double rate = CheckedRate(nh.param("rate", 500.0));
   const std::string topic = nh.param<std::string>("topic", DefaultTopic());
   ros::Publisher publisher = nh.advertise<geometry_msgs::PoseStamped>(topic, 1000);
-  if (nh.param("wait", true)) {
-    ROS_INFO("waiting for a listener on %s", publisher.getTopic().c_str());
-    while (ros::ok() && publisher.getNumSubscribers() == 0) ros::WallDuration(0.05).sleep();
-  }
+  const int listeners = nh.param("listeners", 1);
+  if (listeners > 0) ROS_INFO("waiting for %d listeners on %s", listeners, publisher.getTopic().c_str());
+  while (ros::ok() && static_cast<int>(publisher.getNumSubscribers()) < listeners) ros::WallDuration(0.05).sleep();
   ros::Time::waitForValid();
   const int samples = SampleCount(path, rate);
   do {
