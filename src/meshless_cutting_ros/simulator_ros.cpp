@@ -35,6 +35,7 @@ SimulatorRos::SimulatorRos(const ros::NodeHandle& private_nh) : nh_(private_nh),
   paused_shown_ = paused_;
   input_delay_ns_ = ToNanoseconds(nh_.param<double>(kInputDelayParameter, 0.003));
   max_lag_ns_ = ToNanoseconds(nh_.param<double>(kMaxLagParameter, 0.05));
+  start_with_samples_ = nh_.param<bool>(kStartWithSamplesParameter, false);
   std::istringstream awaited(nh_.param<std::string>(kWaitForListenersParameter, ""));
   awaited_.assign(std::istream_iterator<std::string>(awaited), {});
   encoding_ = ParseEncoding("parameter " + nh_.resolveName(kEncodingParameter),
@@ -144,13 +145,24 @@ void SimulatorRos::Loop() {
   }
 }
 
+bool SimulatorRos::Start(std::int64_t now_ns) {
+  if (start_with_samples_) {
+    run_.inputs->HandOver(run_.session.get());
+    const auto first = run_.session->EarliestWaiting();
+    if (!first) return false;
+    now_ns = *first;
+  }
+  run_.session->Start(now_ns);
+  return true;
+}
+
 std::int64_t SimulatorRos::MakeFrameIfDue() {
   if (!clock_.valid()) return kLongestSleep_ns;
   const std::int64_t now = clock_.Now();
   if (now < last_now_ns_ - kTimeJump_ns) RestartSession("time went back");
   last_now_ns_ = now;
   Session& session = *run_.session;
-  if (!session.started()) session.Start(now);
+  if (!session.started() && !Start(now)) return kLongestSleep_ns;
   const std::int64_t present = now - input_delay_ns_;
   const std::int64_t lag = present - session.NextInputEnd();
   if (lag < 0) return std::min(kLongestSleep_ns, -lag);

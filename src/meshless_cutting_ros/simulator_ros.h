@@ -61,6 +61,8 @@ class SimulatorRos {
   void RestartSession(const std::string& reason);
   /// Leaves samples that came in while a session was built to the session before.
   void ForgetOldSamples();
+  /// Starts the session, if it may: now, or where its first sample is.
+  bool Start(std::int64_t now_ns);
   /// Makes the frame that is due. How long to sleep until the next is, ns: a few ms at most, as time may be simulated.
   std::int64_t MakeFrameIfDue();
   void MakeFrame(std::int64_t input_end_ns);
@@ -94,6 +96,7 @@ class SimulatorRos {
   ros::CallbackQueue input_queue_, service_queue_;
   std::int64_t input_delay_ns_ = 0;
   std::int64_t max_lag_ns_ = 0;
+  bool start_with_samples_ = false;
   PositionEncoding encoding_ = PositionEncoding::kFloat32;
 
   // Of the loop; the scene and the inputs are also looked at by diagnostics, under run_mutex_.

@@ -34,6 +34,7 @@ inline constexpr char kMaxLagParameter[] = "max_lag_s";          // further behi
 inline constexpr char kEncodingParameter[] = "encoding";         // of positions: float32 or uint16
 // Topics of the simulator, separated by blanks: the first frame waits until each has a listener, e.g. a recorder.
 inline constexpr char kWaitForListenersParameter[] = "wait_for_listeners";
+inline constexpr char kStartWithSamplesParameter[] = "start_with_samples";  // bool, false: a session begins with a sample
 inline constexpr char kRobotDescriptionParameter[] = "/robot_description";
 
 // What `replay` and the players call the simulator unless told otherwise.
