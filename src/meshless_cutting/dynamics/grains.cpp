@@ -4,6 +4,17 @@
 #include <algorithm>
 
 namespace meshless_cutting {
+namespace {
+
+/// Of all rotations the one nearest to A; of a mirrored A, too.
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& A) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d U = svd.matrixU();
+  if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) *= -1;
+  return U * svd.matrixV().transpose();
+}
+
+}  // namespace
 
 void Grains::Build(const Tissue& tissue, const Fragments& fragments) {
   volume_.assign(fragments.count(), 0.0);
@@ -38,12 +49,13 @@ void Grains::Build(const Tissue& tissue, const Fragments& fragments) {
   }
 }
 
-void Grains::Calm(const Tissue& tissue, double time_step, const Field& position, Field& velocity,
-                  Field& acceleration) const {
+void Grains::Restore(const Tissue& tissue, double time_step, Field& position, Field& velocity,
+                     Field& acceleration) const {
   int begin = 0;
   for (const int end : end_) {
     double mass = 0;
     Vector4 x, v, a;
+    Eigen::Vector3d X = Eigen::Vector3d::Zero();
     for (int i = begin; i < end; ++i) {
       const int j = particles_[i];
       const double m = tissue.particle_mass[j];
@@ -51,28 +63,37 @@ void Grains::Calm(const Tissue& tissue, double time_step, const Field& position,
       x += m * position[j];
       v += m * velocity[j];
       a += m * acceleration[j];
+      X += m * tissue.particle_rest[j];
     }
     x = (1 / mass) * x;
     v = (1 / mass) * v;
     a = (1 / mass) * a;
+    X /= mass;
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular, kg m^2/s
-    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();   // kg m^2
+    Eigen::Matrix3d fit = Eigen::Matrix3d::Zero();       // kg m^2
     for (int i = begin; i < end; ++i) {
       const int j = particles_[i];
       const double m = tissue.particle_mass[j];
       const Eigen::Vector3d r = (position[j] - x).vector();
       momentum += m * r.cross((velocity[j] - v).vector());
-      inertia += m * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+      fit += m * r * (tissue.particle_rest[j] - X).transpose();
     }
-    // A grain that was pressed onto a line has no inertia about it.
-    inertia += (1e-6 * inertia.trace() + 1e-300) * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d R = NearestRotation(fit);
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // kg m^2
+    for (int i = begin; i < end; ++i) {
+      const int j = particles_[i];
+      const Eigen::Vector3d r = R * (tissue.particle_rest[j] - X);
+      position[j] = x + Vector4::From(r);
+      inertia += tissue.particle_mass[j] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+    }
+    // One that has a single particle has no inertia.
+    inertia += (1e-9 * inertia.trace() + 1e-300) * Eigen::Matrix3d::Identity();
     Eigen::Vector3d spin = inertia.ldlt().solve(momentum);
     const double turn = spin.norm() * time_step;
     if (turn > kMostTurn) spin *= kMostTurn / turn;
     for (int i = begin; i < end; ++i) {
       const int j = particles_[i];
-      const Eigen::Vector3d r = (position[j] - x).vector();
-      velocity[j] = v + Vector4::From(spin.cross(r));
+      velocity[j] = v + Vector4::From(spin.cross((position[j] - x).vector()));
       acceleration[j] = a;
     }
     begin = end;

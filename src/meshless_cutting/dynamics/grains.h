@@ -10,9 +10,10 @@
 namespace meshless_cutting {
 
 /// A grain has no more than an integration point or two: how it deforms is not resolved, its elastic waves pass it many
-/// times a step, and one that turns by about a radian a step is where second order schemes gain energy without bound
-/// (its size then alternates from step to step, and Newton's iterations never end). Grains keep their momentum and turn
-/// as rigid bodies, at most by kMostTurn a step; what else moves in them rests.
+/// times a step, and one that turns by about a radian a step is where second order schemes gain energy without bound,
+/// and Newton's iterations never end. Grains are rigid: after each step they get their shape at rest back, where it
+/// fits best (Mueller et al. 2005, Meshless deformations based on shape matching), keep their momentum, and turn by
+/// kMostTurn a step at most.
 class Grains {
  public:
   static constexpr double kMostTurn =
@@ -21,8 +22,8 @@ class Grains {
   /// Finds the grains. Allocates only to grow.
   void Build(const Tissue& tissue, const Fragments& fragments);
 
-  /// Calms them after a step of `time_step` s.
-  void Calm(const Tissue& tissue, double time_step, const Field& position, Field& velocity, Field& acceleration) const;
+  /// Makes them rigid after a step of `time_step` s.
+  void Restore(const Tissue& tissue, double time_step, Field& position, Field& velocity, Field& acceleration) const;
 
   int count() const { return static_cast<int>(end_.size()); }
 
