@@ -9,9 +9,9 @@ SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 VIEWS="
 situation_1|0.42|{X: 0.035, Y: 0.01, Z: -0.535}|0.25|0.22|5.0|-0.6|object
 situation_2|0.333|{X: 0.06, Y: 0.01, Z: -0.465}|0.24|0.20|4.9|-0.6|object
-situation_3|0.118|{X: 0.025, Y: 0.01, Z: -0.045}|0.15|0.35|5.0|-0.12|object
-fig7_falling_cylinder|0.118|{X: 0, Y: 0, Z: -0.045}|0.22|0.30|5.9|-0.16|object
-fig8_rising_edge|0.115|{X: 0, Y: 0, Z: 0.005}|0.22|0.30|5.9|-0.06|object
+situation_3|0.30|{X: 0.025, Y: 0.01, Z: -0.08}|0.20|0.35|5.0|-0.12|fragments
+fig7_falling_cylinder|0.30|{X: 0, Y: 0, Z: -0.09}|0.32|0.30|5.9|-0.16|fragments
+fig8_rising_edge|0.30|{X: 0, Y: 0, Z: 0.005}|0.22|0.30|5.9|-0.06|fragments
 fig9_twisting_blade|1.05|{X: 0.05, Y: 0.02, Z: 0.015}|0.20|0.45|3.9|0|object
 fig10_brain|3.0|{X: -0.005, Y: 0.0, Z: 0.0}|0.33|0.75|0.75|-0.037|object
 fig11_liver|5.6|{X: 0.0, Y: 0.0, Z: -0.03}|0.31|0.6|5.0|-0.1|object
@@ -85,6 +85,7 @@ picture() {
     sed -i -E -e '/Name: Tissue/,/Topology Topic/s/^( *(Enabled|Value): )true/\1false/' \
       -e '/Name: Tools/,/Namespaces/s/Namespaces: .*/Namespaces: {held: false}/' "$work/view.rviz"
   fi
+  [ "$kind" != fragments ] || sed -i -E 's/^( *Colours: ).*/\1Fragments/' "$work/view.rviz"
   start Xvfb "$display" -screen 0 1280x860x24 +extension GLX +render -noreset
   export ROS_MASTER_URI="http://localhost:$port" DISPLAY="$display"
   start roscore -p "$port"

@@ -43,26 +43,33 @@ std::string CheckSurfaceClosed(const Surface& surface) {
   if (surface.region.size() != surface.triangles.size() || surface.fragment.size() != surface.triangles.size())
     return "regions or fragments do not fit the triangles";
   if (surface.rest_positions.size() != surface.positions.size()) return "positions do not fit the rest positions";
-  // Directed edges as numbers, so that sorting finds doubles and opposites.
-  std::vector<std::uint64_t> edges;
-  edges.reserve(3 * surface.triangles.size());
-  auto directed = [](std::uint64_t from, std::uint64_t to) { return from << 32 | to; };
+  // Ends of the directed edges that start at each vertex.
+  std::vector<size_t> first(surface.rest_positions.size() + 1, 0);
   for (size_t i = 0; i < surface.triangles.size(); ++i) {
     const auto& t = surface.triangles[i];
-    for (std::uint32_t v : t)
+    for (std::uint32_t v : t) {
       if (v >= surface.rest_positions.size()) return At("index out of range in triangle", i);
+      ++first[v + 1];
+    }
     const Eigen::Vector3d& a = surface.rest_positions[t[0]];
     const Eigen::Vector3d b = surface.rest_positions[t[1]] - a, c = surface.rest_positions[t[2]] - a;
     if (!(b.cross(c).norm() > 1e-9 * std::max(b.squaredNorm(), c.squaredNorm()))) return At("degenerate triangle", i);
-    for (int k = 0; k < 3; ++k) edges.push_back(directed(t[k], t[(k + 1) % 3]));
   }
-  std::sort(edges.begin(), edges.end());
-  auto name = [](std::uint64_t edge) { return std::to_string(edge >> 32) + "-" + std::to_string(edge & 0xffffffffu); };
-  if (const auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end())
-    return "an edge has two triangles on one side: " + name(*twice);
-  for (std::uint64_t edge : edges)
-    if (!std::binary_search(edges.begin(), edges.end(), directed(edge & 0xffffffffu, edge >> 32)))
-      return "open edge " + name(edge);
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> ends(first.back());
+  std::vector<size_t> filled(first.begin(), first.end() - 1);
+  for (const auto& t : surface.triangles)
+    for (int k = 0; k < 3; ++k) ends[filled[t[k]]++] = t[(k + 1) % 3];
+  for (std::uint32_t a = 0; a + 1 < first.size(); ++a)
+    for (size_t i = first[a]; i < first[a + 1]; ++i) {
+      auto name = [&] { return std::to_string(a) + "-" + std::to_string(ends[i]); };
+      auto count = [&](std::uint32_t from, std::uint32_t to) {
+        return std::count(ends.begin() + static_cast<std::ptrdiff_t>(first[from]),
+                          ends.begin() + static_cast<std::ptrdiff_t>(first[from + 1]), to);
+      };
+      if (count(a, ends[i]) != 1) return "an edge has two triangles on one side: " + name();
+      if (count(ends[i], a) != 1) return "open edge " + name();
+    }
   return {};
 }
 
