@@ -35,14 +35,17 @@ void Dynamics::Parts::Load(const TissueState& state) {
   const bool know_acceleration =
       !first_step && static_cast<int>(state.acceleration.size()) == particles && IsFinite(state.acceleration);
   const bool know_position = IsFinite(state.position);
+  bool is_as_it_was = true;
   for (int j = 0; j < particles; ++j) {
     const bool is_free = potential.free[j] > 0;
+    is_as_it_was = is_as_it_was && state.position[j] == position[j].vector();
     if (know_position) start_position[j] = Vector4::From(state.position[j]);  // else the last good ones
     start_velocity[j] = is_free && know_velocity ? Vector4::From(state.velocity[j]) : Vector4();
     // Not known: as if the elastic forces set in now. Exact for a body in free fall or at rest without strain.
     start_acceleration[j] = !is_free ? Vector4() : know_acceleration ? Vector4::From(state.acceleration[j]) : body;
   }
   first_step = false;
+  if (!is_as_it_was) elastic_force_is = ElasticForceIs::kOfAnotherState;
   driven_end.clear();
   if (driven.empty()) return;
   driven_end = start_position;
@@ -60,8 +63,8 @@ void Dynamics::Parts::Store(const Tissue& tissue, TissueState& state, AdvanceRes
     result.kinetic_j += 0.5 * tissue.particle_mass[j] * state.velocity[j].squaredNorm();
     if (config.gravity_m_s2) result.gravity_j -= tissue.particle_mass[j] * config.gravity_m_s2->dot(state.position[j]);
   }
-  std::fill(scratch.begin(), scratch.end(), Vector4());
-  result.elastic_j = points.Evaluate(position, scratch);
+  if (elastic_force_is != ElasticForceIs::kOfPosition) EvaluateElastic(position, ElasticForceIs::kOfPosition);
+  result.elastic_j = elastic_energy;
   if (contact) result.contacts = contact->contact_count();
 }
 
@@ -96,7 +99,7 @@ void Dynamics::SetForces(const std::vector<Eigen::Vector3d>& forces) {
   p.forces = std::sqrt(sum);
 }
 
-Eigen::Vector3d Dynamics::ElasticForce(int j) const { return parts_->scratch[j].vector(); }
+Eigen::Vector3d Dynamics::ElasticForce(int j) const { return parts_->elastic_force[j].vector(); }
 
 void Dynamics::Tune(const Tuning& tuning, const Tissue& tissue) {
   Parts& p = *parts_;
@@ -119,11 +122,13 @@ AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin,
   bool solved = p.SolveSteps(tissue, p.config.solver.sub_steps, result);
   for (int doubling = 1; doubling <= kDoublings && !solved; ++doubling) {
     result.status |= kStepRolledBack;
+    p.elastic_force_is = Parts::ElasticForceIs::kOfAnotherState;
     solved = p.SolveSteps(tissue, p.config.solver.sub_steps << doubling, result);
   }
   if (!solved) {
     result.status |= kStepFrozen;
     p.asleep = false;
+    p.elastic_force_is = Parts::ElasticForceIs::kOfAnotherState;
     p.position = p.start_position;
     std::fill(p.velocity.begin(), p.velocity.end(), Vector4());
     std::fill(p.acceleration.begin(), p.acceleration.end(), Vector4());

@@ -78,14 +78,16 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   particles = tissue.particle_count();
   skin_changed = true;
   asleep = false;
+  elastic_force_is = ElasticForceIs::kOfAnotherState;
   points.TissueChanged(tissue);
   elastic.TissueChanged();
   for (ForceTerm* term : terms) term->TissueChanged(particles);
   fragments.Build(tissue);
   grains.Build(tissue, fragments);
   potential.Resize(particles);
-  for (Field* field : {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration,
-                       &end_position, &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch}) {
+  for (Field* field :
+       {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration, &end_position,
+        &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch, &elastic_force}) {
     field->resize(particles);
   }
   cell = CellOf(tissue);

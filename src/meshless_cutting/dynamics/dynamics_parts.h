@@ -44,8 +44,9 @@ struct Dynamics::Parts {
   /// One step into end_position, end_velocity, end_acceleration: by Newton's method. Where a second order step ends
   /// badly it is made again with a more cautious scheme, and once more as implicit Euler.
   bool SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
-  /// Whether the step that ends in end_position, end_velocity must not be taken.
-  bool IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual);
+  /// Whether the step that ends in end_position, end_velocity must not be taken: `growth` is the most energy, J, that
+  /// it may end with.
+  bool IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth);
   /// As SolveImplicit, in many small steps. False also when the energy grows: the steps were too long for what the
   /// object has become.
   bool SolveExplicit(const Tissue& tissue, double time_step);
@@ -55,9 +56,13 @@ struct Dynamics::Parts {
   void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
   /// A copy of y (in scratch) with the held particles where the step wants them.
   Field& Held(const Field& y);
-  /// Energy of motion, strain and gravity, J, at the given state. Contact has none worth counting. Its gradient by
-  /// position, without gravity, is left in scratch.
-  double EnergyOf(const Tissue& tissue, const Field& x, const Field& v);
+  /// Energy of strain, J; leaves its gradient in elastic_force.
+  enum class ElasticForceIs { kOfAnotherState, kOfPosition, kOfTheEnd };
+  double EvaluateElastic(const Field& x, ElasticForceIs of);
+  /// Energy of motion and gravity, relative to position, J. Contact has none worth counting.
+  double OtherEnergyOf(const Tissue& tissue, const Field& x, const Field& v);
+  /// The most energy that a step from position, velocity may end with, J.
+  double EnergyAtStart(const Tissue& tissue);
 
   // dynamics.cpp
   /// The frame: `steps` equal steps from the start of the frame; false when one of them failed.
@@ -94,6 +99,11 @@ struct Dynamics::Parts {
   Field start_position, start_velocity, start_acceleration;  // of the frame
   Field end_position, end_velocity, end_acceleration;        // of the step in progress, until it is accepted
   Field stage, steady, still, scratch;
+
+  // Of the last EvaluateElastic: at position it serves the next step and the report of the frame as well.
+  double elastic_energy = 0;  // J
+  Field elastic_force;        // N, the energy's gradient
+  ElasticForceIs elastic_force_is = ElasticForceIs::kOfAnotherState;
 
   // Scenes that move held particles, or pull: empty in others.
   std::vector<int> driven;

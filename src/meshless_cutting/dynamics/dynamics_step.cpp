@@ -10,9 +10,9 @@ namespace {
 /// overshot.
 constexpr double kEnergyGrowth = 1.2;
 
-/// So has one that leaves as much of the forces: a body that is turned inside out, say, or a small piece that spins faster
-/// than the scheme can follow, whose unbalanced steps would blow it up. A residual that is merely large is no reason: the
-/// step is repeated no better, and implicit Euler takes a fifth of a soft beam's swing away.
+/// So has one that leaves as much of the forces: a body that is turned inside out, say, or a small piece that spins
+/// faster than the scheme can follow, whose unbalanced steps would blow it up. A residual that is merely large is no
+/// reason: the step is repeated no better, and implicit Euler takes a fifth of a soft beam's swing away.
 constexpr double kUnbalanced = 0.3;
 
 }  // namespace
@@ -25,6 +25,8 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
   }
   asleep = false;
   if (!(explicit_steps ? SolveExplicit(tissue, time_step) : SolveImplicit(tissue, scheme, result))) return false;
+  elastic_force_is =
+      elastic_force_is == ElasticForceIs::kOfTheEnd ? ElasticForceIs::kOfPosition : ElasticForceIs::kOfAnotherState;
   position.swap(end_position);
   velocity.swap(end_velocity);
   acceleration.swap(end_acceleration);
@@ -33,18 +35,22 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
     std::fill(acceleration.begin(), acceleration.end(), Vector4());
   } else {
     grains.Restore(tissue, time_step, position, velocity, acceleration);
+    if (grains.count() > 0) elastic_force_is = ElasticForceIs::kOfAnotherState;
   }
   return true;
 }
 
 bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
+  const bool is_second_order = choice.integrator == Integrator::kGeneralizedAlpha;
+  const double growth = is_second_order ? EnergyAtStart(tissue) : 0;
   NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
-  if (choice.integrator == Integrator::kGeneralizedAlpha && IsBad(tissue, verdict, result.relative_residual)) {
+  if (is_second_order && IsBad(tissue, verdict, result.relative_residual, growth)) {
     // The end of a generalised-alpha step lies beyond the stage that was solved for. After violence that is no place to
     // go.
     verdict = Attempt(tissue, TimeScheme(choice.integrator, scheme.time_step_s(), true), result);
-    if (IsBad(tissue, verdict, result.relative_residual)) {
+    if (IsBad(tissue, verdict, result.relative_residual, growth)) {
       verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, scheme.time_step_s()), result);
+      elastic_force_is = ElasticForceIs::kOfAnotherState;
     }
   }
   if (verdict == NewtonSolver::Verdict::kFailed) return false;
@@ -53,11 +59,12 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
   return true;
 }
 
-bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual) {
+bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth) {
   if (verdict == NewtonSolver::Verdict::kFailed || residual > kUnbalanced) return true;
-  // Who moves held particles puts energy in.
-  return !IsMoving() && !(EnergyOf(tissue, end_position, end_velocity) <=
-                          kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor);
+  if (IsMoving()) return false;  // who moves held particles puts energy in
+  return !(EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) +
+               OtherEnergyOf(tissue, end_position, end_velocity) <=
+           growth);
 }
 
 NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
@@ -146,9 +153,22 @@ Field& Dynamics::Parts::Held(const Field& y) {
   return scratch;
 }
 
-double Dynamics::Parts::EnergyOf(const Tissue& tissue, const Field& x, const Field& v) {
-  std::fill(scratch.begin(), scratch.end(), Vector4());
-  double energy = points.Evaluate(x, scratch);
+double Dynamics::Parts::EvaluateElastic(const Field& x, ElasticForceIs of) {
+  std::fill(elastic_force.begin(), elastic_force.end(), Vector4());
+  elastic_energy = points.Evaluate(x, elastic_force);
+  elastic_force_is = of;
+  return elastic_energy;
+}
+
+double Dynamics::Parts::EnergyAtStart(const Tissue& tissue) {
+  if (elastic_force_is != ElasticForceIs::kOfPosition) EvaluateElastic(position, ElasticForceIs::kOfPosition);
+  const double growth = kEnergyGrowth * (elastic_energy + OtherEnergyOf(tissue, position, velocity)) + energy_floor;
+  elastic_force_is = ElasticForceIs::kOfAnotherState;  // soon
+  return growth;
+}
+
+double Dynamics::Parts::OtherEnergyOf(const Tissue& tissue, const Field& x, const Field& v) {
+  double energy = 0;
   const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
   for (int j = 0; j < particles; ++j) {
     energy += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
@@ -172,12 +192,14 @@ bool Dynamics::Parts::SolveExplicit(const Tissue& tissue, double time_step) {
   end_position = position;
   end_velocity = velocity;
   end_acceleration = acceleration;
-  const double growth = kEnergyGrowth * EnergyOf(tissue, position, velocity) + energy_floor;
+  const double growth = EnergyAtStart(tissue);
   if (!explicit_steps->Run(tissue.particle_mass, acting, time_step / steps, steps, end_position, end_velocity,
                            end_acceleration)) {
     return false;
   }
-  return is_moving || EnergyOf(tissue, end_position, end_velocity) <= growth;
+  return is_moving ||
+         EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) + OtherEnergyOf(tissue, end_position, end_velocity) <=
+             growth;
 }
 
 }  // namespace meshless_cutting
