@@ -29,6 +29,7 @@ struct ToolInputs::Box {
   ReceiptStamps receipt_stamps;
   std::optional<ros::SteadyTime> received;
   bool silence_told = false;
+  bool typed = false;  // a message has fixed the type of the subscription
 };
 
 std::string SourceName(const ros::NodeHandle& nh, const ToolConfig& config) {
@@ -81,6 +82,10 @@ ros::Subscriber ToolInputs::SubscribeToPoses(int tool, const std::string& topic)
   return nh_.subscribe<topic_tools::ShapeShifter>(
       topic, kInputQueue,
       [this, tool](const topic_tools::ShapeShifter::ConstPtr& message) {
+        {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          boxes_[tool].typed = true;
+        }
         if (const auto sample = PoseFromAny(*message)) return Receive(tool, *sample);
         reports_[tool]->Count(InputFault::kWrongType, message->getDataType());
       },
@@ -90,7 +95,12 @@ ros::Subscriber ToolInputs::SubscribeToPoses(int tool, const std::string& topic)
 void ToolInputs::Refresh() {
   for (PoseTopic& topic : pose_topics_) {
     const bool has_publisher = topic.subscriber.getNumPublishers() > 0;
-    if (topic.had_publisher && !has_publisher) {
+    bool typed = false;  // also by a publisher that came and went between two calls
+    if (!has_publisher) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      typed = std::exchange(boxes_[topic.tool].typed, false);
+    }
+    if (!has_publisher && (typed || topic.had_publisher)) {
       topic.subscriber.shutdown();
       topic.subscriber = SubscribeToPoses(topic.tool, topic.name);
     }

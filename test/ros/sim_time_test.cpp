@@ -15,7 +15,7 @@ class SimTimeTest : public testing::Test {
       : clock_(nh_.advertise<rosgraph_msgs::Clock>("/clock", 10)),
         poses_(nh_.advertise<geometry_msgs::PoseStamped>("/simulator/scalpel/measured_cp", 1000)),
         statistics_sub_(nh_.subscribe<StepStatistics>("/simulator/statistics", 1000,
-                                                         [this](const StepStatisticsConstPtr& m) { last_ = m; })) {
+                                                      [this](const StepStatisticsConstPtr& m) { last_ = m; })) {
     for (int i = 0; i < 2000 && (poses_.getNumSubscribers() == 0 || statistics_sub_.getNumPublishers() == 0); ++i)
       Spin();
     for (int i = 0; i < 2000 && clock_.getNumSubscribers() < 2; ++i) Spin();  // this node and the simulator
@@ -35,6 +35,8 @@ class SimTimeTest : public testing::Test {
       ros::WallDuration(0.002).sleep();  // a driver publishes after the clock says so
       poses_.publish(pose);
       Spin();
+      // A clock that runs away from a simulator that stands still would test the machine.
+      for (int i = 0; i < 4000 && last_ && last_->header.stamp + ros::Duration(0.045) < tick.clock; ++i) Spin();
     }
     for (double t = 0; t < rest_s; t += 0.005) {
       rosgraph_msgs::Clock tick;
@@ -42,6 +44,8 @@ class SimTimeTest : public testing::Test {
       clock_.publish(tick);
       Spin();
     }
+    const ros::Time end(start_s + 0.5 + rest_s - 0.03);
+    for (int i = 0; i < 6000 && !(last_ && last_->header.stamp > end); ++i) Spin();
     for (int i = 0; i < 100; ++i) Spin();
   }
 

@@ -40,8 +40,8 @@ class SimulatorTest : public testing::Test {
     Reset();
   }
 
-  // Spins until it holds, at most 20 s.
-  static bool Until(const std::function<bool()>& condition, double seconds = 20) {
+  // Spins until it holds. The limit is for what never comes; it says nothing of how fast a machine is.
+  static bool Until(const std::function<bool()>& condition, double seconds = 60) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(seconds);
     while (ros::ok() && ros::WallTime::now() < end) {
       ros::spinOnce();
@@ -49,6 +49,12 @@ class SimulatorTest : public testing::Test {
       ros::WallDuration(0.002).sleep();
     }
     return false;
+  }
+
+  // Spins until the simulator has made so many frames more, whatever the machine does meanwhile.
+  bool Frames(std::size_t count) {
+    const std::size_t wanted = statistics_.size() + count;
+    return Until([&] { return statistics_.size() >= wanted; });
   }
 
   template <class Service>
@@ -94,6 +100,19 @@ class SimulatorTest : public testing::Test {
       publisher.publish(to(pose));
       ros::spinOnce();
     }
+  }
+
+  // The same until the object is in `count` pieces: where the machine stood still in the middle of a stroke, the blade
+  // began anew there, and another stroke finishes the cut.
+  template <class Message>
+  bool Separate(const ros::Publisher& publisher, double x,
+                const std::function<Message(const geometry_msgs::PoseStamped&)>& to, std::uint32_t count) {
+    const auto separated = [&] { return !statistics_.empty() && statistics_.back()->fragments >= count; };
+    for (int stroke = 0; stroke < 4; ++stroke) {
+      Play<Message>(publisher, x, to);
+      if (Until(separated, 5)) return true;
+    }
+    return false;
   }
 
   int Fault(const std::string& name, const std::string& tool = "scalpel") const {

@@ -65,7 +65,7 @@ TEST(SteppedTest, NodeAndReplayAgreeToTheBit) {
   }
   ros::WallDuration(0.5).sleep();
   for (const auto& pose : stroke) poses.publish(pose);
-  ros::WallDuration(1).sleep();  // all are in the mailbox
+  ros::WallDuration(3).sleep();  // all are in the mailbox
   ASSERT_TRUE(ros::service::waitForService("/simulator/step", 10000));
   Step step;
   step.request.frames = 25;
