@@ -155,10 +155,11 @@ def main():
                     sys.exit(f"{cut['links']} links cut, expected none")
             else:
                 until(lambda: cut["links"] > 20, "a cut", launch)
-            launch.send_signal(signal.SIGINT)
-            launch.wait(60)
         finally:
-            if launch.poll() is None:
+            launch.send_signal(signal.SIGINT)  # also after a failure: killed, it would leave its nodes behind
+            try:
+                launch.wait(60)
+            except subprocess.TimeoutExpired:
                 launch.kill()
             log.seek(0)
             text = log.read()
