@@ -12,12 +12,14 @@
 #include "cut/stroke_log.h"
 #include "lattice/primitives.h"
 #include "simulation_checks.h"
+#include "tool/blade_rim.h"
 
 namespace meshless_cutting {
 namespace {
 
-/// Width of the rim of a slit, in lattice sizes.
+/// Width of the rim of a slit and of a blade, in lattice sizes: see WithRim. Many times what a vertex stands off its place, and microns.
 constexpr double kSlitRim = 1e-3;
+constexpr double kBladeRim = 1e-5;
 
 using Clock = std::chrono::steady_clock;
 
@@ -224,7 +226,8 @@ void Simulation::Parts::MoveTools(double t0_s, double t1_s) {
 }
 
 void Simulation::Parts::FindCrossings() {
-  for (auto& state : cutting->tools) state.cut.crossings = cutting->finder.Find(state.motion, body->motion());
+  const double rim = kBladeRim * scene.object.lattice_size_m;
+  for (auto& state : cutting->tools) state.cut.crossings = cutting->finder.Find(WithRim(state.motion, rim), body->motion());
   body->CloseWindow();
   // A link that several blades cross in this frame belongs to the first.
   auto& tools = cutting->tools;

@@ -9,24 +9,17 @@
 
 #include "scene/scene_reader.h"
 #include "simulation.h"
+#include "study_numbers.h"
 
 namespace meshless_cutting {
 namespace {
 
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDeadlineMs = 1000.0 / 60;
 constexpr double kPi = 3.14159265358979323846;
 
 const std::map<MaterialModel, std::string> kModelNames = {{MaterialModel::kStableNeoHookean, "stable_neo_hookean"},
                                                           {MaterialModel::kNeoHookean, "neo_hookean"},
                                                           {MaterialModel::kStVenantKirchhoff, "st_venant_kirchhoff"},
                                                           {MaterialModel::kLinear, "linear"}};
-
-double Percentile(std::vector<double> values, double share) {
-  if (values.empty()) return kNotMeasured;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
-}
 
 const ProbeReading& ProbeOf(const Simulation& simulation, const std::string& name) {
   for (const ProbeReading& probe : simulation.probes()) {
@@ -77,11 +70,6 @@ double EndOfMotion(const Scene& scene) {
 void Count(const Simulation& simulation, StudyRow& row) {
   row.particles = simulation.statistics().particles;
   row.integration_points = simulation.statistics().integration_points;
-}
-
-void Fail(const std::string& note, StudyRow& row) {
-  row.failed = true;
-  row.note += (row.note.empty() ? "" : "; ") + note;
 }
 
 struct Times {
@@ -223,17 +211,23 @@ void StudyRuns::Balance(const StudyCase& c, StudyRow& row) const {
   row.note += (row.note.empty() ? "" : "; ") + std::string("error in balance; time of frames of 1/60 s on the way");
 }
 
-void StudyRuns::SolverError(const StudyCase& c, StudyRow& row) const {
-  constexpr int kFrames = 30;
+void StudyRuns::SolverError(const StudyCase& c, StudyRow& row) {
+  const int kFrames = c.frames;
   Scene scene = SceneOf(c);
   scene.solver = c.solver;
   Times times, unused;
   const std::vector<double> path = TipPath(scene, kFrames, times, row);
   times.Fill(row);
   if (row.failed) return;
-  scene.solver.relative_tolerance = 1e-9;
-  scene.solver.newton_iterations = 60;
-  const std::vector<double> converged = TipPath(scene, kFrames, unused, row);
+  std::ostringstream key;
+  key << kModelNames.at(c.model) << ' ' << c.youngs_modulus_pa << ' ' << c.poisson_ratio << ' ' << c.cell_size_m << ' '
+      << c.time_step_s << ' ' << static_cast<int>(c.solver.integrator);
+  std::vector<double>& converged = converged_[key.str()];
+  if (converged.empty()) {
+    scene.solver.relative_tolerance = 1e-8;
+    scene.solver.newton_iterations = 100;
+    converged = TipPath(scene, kFrames, unused, row);
+  }
   if (converged.size() != path.size()) return;
   double difference = 0, size = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
@@ -307,51 +301,6 @@ void StudyRuns::Frequency(const StudyCase& c, const std::string& mode, StudyRow&
   row.value = found.at(mode);
   row.reference = reference.Value(mode);
   row.error_discretisation = std::abs(row.value / row.reference - 1);
-}
-
-void StudyRuns::CutFrames(const StudyCase& c, StudyRow& row) const {
-  Scene scene = ReadScene(folder_.parent_path().parent_path() / "block.yaml");
-  scene.object.material.model = c.model;
-  scene.object.material.youngs_modulus_pa = c.youngs_modulus_pa;
-  scene.object.material.poisson_ratio = c.poisson_ratio;
-  scene.object.lattice_size_m = 0.8 * c.cell_size_m;
-  scene.object.cell_size_m = c.cell_size_m;
-  Simulation simulation(scene);
-  Count(simulation, row);
-  constexpr int kFrames = 90;
-  std::vector<double> find, cut, advance, map, total;
-  double worst = 0;
-  int missed = 0, sample = 0;
-  for (int n = 0; n < kFrames; ++n) {
-    const double end_s = simulation.statistics().time_s + scene.time_step_s;
-    for (; sample / 500.0 <= end_s; ++sample) {  // from above the block to its middle, 40 mm/s
-      ToolSample pose;
-      pose.time_s = sample / 500.0;
-      pose.position_m = Eigen::Vector3d(0.051, 0, 0.06 - 0.04 * std::min(1.0, pose.time_s));
-      simulation.AddToolSample(0, pose);
-    }
-    const int links = simulation.statistics().links_cut;
-    simulation.Step();
-    const FrameStatistics& s = simulation.statistics();
-    if (s.status & kStepFrozen) Fail("a step was given up", row);
-    if (s.links_cut == links) continue;  // cut frames are what is reported
-    find.push_back(1e3 * s.find_crossings_s);
-    cut.push_back(1e3 * s.cut_s);
-    advance.push_back(1e3 * s.advance_s);
-    map.push_back(1e3 * s.map_surface_s);
-    total.push_back(1e3 * s.total_s);
-    worst = std::max(worst, total.back());
-    missed += total.back() > kDeadlineMs ? 1 : 0;
-  }
-  if (total.empty()) return Fail("nothing was cut", row);
-  row.wall_ms_p50 = Percentile(total, 0.5);
-  row.wall_ms_p99 = Percentile(total, 0.99);
-  std::ostringstream note;
-  note.precision(3);
-  note << total.size() << " frames that cut; p50 in ms: crossings " << Percentile(find, 0.5) << " cut "
-       << Percentile(cut, 0.5) << " dynamics " << Percentile(advance, 0.5) << " surface " << Percentile(map, 0.5)
-       << "; longest " << worst << "; deadline missed in " << missed;
-  row.note = note.str();
 }
 
 }  // namespace meshless_cutting

@@ -26,8 +26,7 @@ class Suite {
           [c, mode](StudyRuns& runs, StudyRow& row) { runs.Frequency(c, mode, row); });
     }
   }
-  void CutFrames(StudyCase c) {
-    c.problem = "cut_block";
+  void CutFrames(const StudyCase& c) {
     Add(c, "default", 0, [c](StudyRuns& runs, StudyRow& row) { runs.CutFrames(c, row); });
   }
 
@@ -78,6 +77,13 @@ void AddQuick(Suite& suite) {
   suite.Swing(Swinging(h, 1.0 / 120, Integrator::kGeneralizedAlpha), 0.01);
 }
 
+/// The cantilever across `cells` cells: 525 particles at 4, 1,519 at 6, 3,321 at 8, 10,309 at 12, 32,851 at 18.
+StudyCase Beam(double modulus, double ratio, int cells, int newton = SolverConfig().newton_iterations) {
+  StudyCase c = Case("cantilever", modulus, ratio, 0.02 / cells);
+  c.solver.newton_iterations = newton;
+  return c;
+}
+
 /// What says most comes first: an interrupted study is of use.
 void AddFull(Suite& suite) {
   for (double rate : {60.0, 120.0, 240.0}) {
@@ -96,6 +102,11 @@ void AddFull(Suite& suite) {
     suite.Balance(Case("torsion", 1e5, 0.45, 0.02 / across));
     suite.Balance(Case("torsion_half_turn", 1e5, 0.3, 0.02 / across));
   }
+  for (int across : {2, 4, 6}) {
+    suite.Balance(Case("cook", 1e5, 0.3, 0.01 / across));
+    suite.Balance(Case("cook", 1e5, 0.499, 0.01 / across));
+  }
+  for (int across : {6, 8, 12}) suite.Balance(Case("slit_block", 2e4, 0.3, 0.06 / across));
   for (int across : {6, 8}) {
     for (Model model : {Model::kStableNeoHookean, Model::kStVenantKirchhoff, Model::kLinear}) {
       suite.Balance(Case("cantilever", 1e5, 0.45, 0.02 / across, model));
@@ -104,27 +115,31 @@ void AddFull(Suite& suite) {
     suite.Balance(Case("cantilever", 1e4, 0.3, 0.02 / across));
     suite.Balance(Case("cantilever", 1e6, 0.45, 0.02 / across));
   }
-  for (int across : {2, 4, 6}) suite.Balance(Case("cook", 1e5, 0.3, 0.01 / across));
-  for (int across : {6, 8, 12}) suite.Balance(Case("slit_block", 2e4, 0.3, 0.06 / across));
+  for (double cell : {0.0065, 0.0085}) suite.CutFrames(Case("cut_liver", 5e3, 0.45, cell, Model::kStableNeoHookean));
   for (double cell : {0.008, 0.005, 0.004}) suite.CutFrames(Case("cut_block", 2e4, 0.4, cell, Model::kStableNeoHookean));
+  for (double modulus : {1e4, 1e7}) {
+    for (double ratio : {0.45, 0.49}) {
+      for (int newton : {1, 2, 4, 8}) suite.SolverError(Beam(modulus, ratio, 8, newton));
+    }
+  }
+  for (double modulus : {1e3, 1e4, 1e5, 1e6, 1e7, 1e9}) {
+    for (double ratio : {0.3, 0.45, 0.49, 0.499}) suite.SolverError(Beam(modulus, ratio, 6));
+  }
   for (int across : {4, 6}) {
     StudyCase modes = Case("frequencies", 1e5, 0.45, 0.02 / across, Model::kLinear);
     modes.time_step_s = 0.001;
     suite.Frequencies(modes);
   }
-  for (int across : {8, 12}) {
-    for (double modulus : {1e4, 1e7}) {
-      for (double ratio : {0.45, 0.49}) {
-        for (int newton : {1, 2, 4}) {
-          StudyCase c = Case("cantilever", modulus, ratio, 0.02 / across);
-          c.solver.newton_iterations = newton;
-          suite.SolverError(c);
-        }
-      }
-    }
+  suite.Balance(Case("cantilever", 1e5, 0.45, 0.02 / 12));
+  for (double ratio : {0.45, 0.49}) {
+    for (int newton : {2, 4}) suite.SolverError(Beam(1e4, ratio, 12, newton));
   }
-  for (double modulus : {1e3, 1e5, 1e6, 1e9}) {
-    for (double ratio : {0.3, 0.45, 0.49, 0.499}) suite.SolverError(Case("cantilever", modulus, ratio, 0.0025));
+  for (int newton : {2, 4}) suite.SolverError(Beam(1e7, 0.49, 12, newton));
+  suite.Balance(Case("cantilever", 1e5, 0.45, 0.02 / 18));
+  for (double modulus : {1e4, 1e7}) {
+    StudyCase c = Beam(modulus, 0.45, 18);
+    c.frames = 10;
+    suite.SolverError(c);
   }
 }
 

@@ -40,9 +40,9 @@ TEST(Allocation, StepsAllocateNothing) {
 
 /// Every subset of the optional parts builds, steps and allocates nothing on its way; what a part needs is not there without it.
 TEST(Allocation, EverySubsetOfPartsStepsWithoutAllocatingAndAbsentPartsHoldNothing) {
-  enum : unsigned { kGravity = 1, kMassDamping = 2, kStiffnessDamping = 4, kObstacle = 8, kFixed = 16, kExplicit = 32, kSubSteps = 64 };
-  std::vector<long> built(128);
-  for (unsigned parts = 0; parts < 128; ++parts) {
+  enum : unsigned { kGravity = 1, kMassDamping = 2, kStiffnessDamping = 4, kObstacle = 8, kFixed = 16, kExplicit = 32, kSubSteps = 64, kViscous = 128, kAll = 256 };
+  std::vector<long> built(kAll);
+  for (unsigned parts = 0; parts < kAll; ++parts) {
     BoxTissueConfig box;
     box.cells = {4, 3, 3};
     box.size = {0.04, 0.03, 0.03};
@@ -59,6 +59,7 @@ TEST(Allocation, EverySubsetOfPartsStepsWithoutAllocatingAndAbsentPartsHoldNothi
     if (parts & kObstacle) {
       config.obstacles.push_back({PlaneObstacle{Eigen::Vector3d(0, 0, -0.001), Eigen::Vector3d::UnitZ()}, 0.5});
     }
+    if (parts & kViscous) config.material.prony = {{0.5, 0.1}, {0.2, 2}};
     if (parts & kExplicit) config.solver.integrator = Integrator::kExplicit;
     if (parts & kSubSteps) config.solver.sub_steps = 2;
     TissueState state = RestState(tissue);
@@ -74,12 +75,13 @@ TEST(Allocation, EverySubsetOfPartsStepsWithoutAllocatingAndAbsentPartsHoldNothi
     }
     EXPECT_EQ(AllocationCount(), ready) << parts;
   }
-  for (unsigned parts = 0; parts < 128; ++parts) {
+  for (unsigned parts = 0; parts < kAll; ++parts) {
     // Neither is anything more than a few numbers.
     for (unsigned free_part : {kGravity, kMassDamping, kSubSteps}) {
       EXPECT_EQ(built[parts | free_part], built[parts & ~free_part]) << parts;
     }
     EXPECT_GT(built[parts | kObstacle], built[parts & ~kObstacle]) << parts;
+    EXPECT_GT(built[parts | kViscous], built[parts & ~kViscous]) << parts;
     EXPECT_GT(built[parts | kStiffnessDamping], built[parts & ~kStiffnessDamping]) << parts;
   }
 }

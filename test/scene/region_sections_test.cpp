@@ -23,7 +23,8 @@ object:
   loads:
     - {name: pull, box_m: {min: [0, 0, 0.03], max: [0.1, 0.02, 0.03001]}, force_n: [0, 0, 1]}
     - {box_m: {min: [0, 0, -1], max: [0.1, 1, 0.001]}, traction_pa: {time_s: [0, 2], values: [[0, 0, 0], [5, 0, 0]]}}
-  regions: [{box_m: {min: [0, 0, 0], max: [0.05, 1, 1]}, material: {youngs_modulus_pa: 50000, poisson_ratio: 0.3, density_kg_m3: 1200}}]
+  regions: [{box_m: {min: [0, 0, 0], max: [0.05, 1, 1]}, material: {youngs_modulus_pa: 50000, poisson_ratio: 0.3, density_kg_m3: 1200,
+    prony: [{modulus_ratio: 0.5, relaxation_time_s: 0.1}, {modulus_ratio: 2, relaxation_time_s: 30}]}}]
   slits: [{corner_m: [0.05, -0.01, -0.01], edges_m: [[0, 0.04, 0], [0, 0, 0.02]]}]
   stabilisation: 2
 probes: [{name: tip, position_m: [0.1, 0.01, 0.01]}, {name: lip, position_m: [0.05, 0.01, 0], side: [-2, 0, 0]}]
@@ -52,6 +53,10 @@ TEST_F(RegionsTest, AreRead) {
   EXPECT_EQ(object.regions[0].material.youngs_modulus_pa, 50000);
   EXPECT_EQ(object.slits[0].edges[1], Eigen::Vector3d(0, 0, 0.02));
   EXPECT_EQ(object.stabilisation, 2);
+  EXPECT_TRUE(object.material.prony.empty());
+  ASSERT_EQ(object.regions[0].material.prony.size(), 2u);
+  EXPECT_EQ(object.regions[0].material.prony[1].modulus_ratio, 2);
+  EXPECT_EQ(object.regions[0].material.prony[1].relaxation_time_s, 30);
   EXPECT_EQ(scene.probes[1].side, Eigen::Vector3d(-1, 0, 0));
   EXPECT_EQ(scene.solver.integrator, Integrator::kQuasiStatic);
 }
@@ -111,6 +116,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadRegion{"regions: [{box_m: {min: [0, 0, 0], max: [0.05, 1, 1]}", "regions: [{mesh: none.obj",
                   "key `object.regions[0].mesh`: none.obj: expected a mesh file"},
         BadRegion{"[0, 0.04, 0], [0, 0, 0.02]", "[0, 0.04, 0], [0, 0.02, 0]", "expected two vectors that span an area"},
+        BadRegion{"modulus_ratio: 2", "modulus_ratio: 0",
+                  "key `object.regions[0].material.prony[1].modulus_ratio`: 0: expected a number in (0, 100]"},
+        BadRegion{"relaxation_time_s: 30", "relaxation_time_s: -1", "relaxation_time_s`: -1: expected a number in [0.0001, 1000000]"},
+        BadRegion{", relaxation_time_s: 30", "", "prony[1].relaxation_time_s`"},
+        BadRegion{"relaxation_time_s: 30", "relaxation_time_s: 30, tau: 1", "tau"},
+        BadRegion{"prony: [{modulus_ratio: 0.5, relaxation_time_s: 0.1}, {modulus_ratio: 2, relaxation_time_s: 30}]", "prony: 3",
+                  "prony`: 3: expected a list"},
         BadRegion{"stabilisation: 2", "stabilisation: 0", "key `object.stabilisation`: 0: expected a number in [0.01, 10]"},
         BadRegion{"poisson_ratio: 0.4999", "poisson_ratio: 0.5", "0.5 would be incompressible"}));
 

@@ -52,6 +52,7 @@ void Twins::FillPoint(int p, Tissue& tissue) {
       const int material = point.parent < 0 ? materials_.At(point.centroid) : tissue.point_material[point.parent];
       tissue.point_material.push_back(material);
     }
+    tissue.point_origin.push_back(point.parent);
     tissue.point_volume.push_back(0);
     tissue.point_rest.emplace_back();
     tissue.point_gradients.resize(tissue.point_gradients.size() + K);

@@ -21,6 +21,7 @@ bool Dynamics::Parts::SolveSteps(const Tissue& tissue, int steps, AdvanceResult&
   position = start_position;
   velocity = start_velocity;
   acceleration = start_acceleration;
+  if (viscous) viscous->Restore();
   asleep = true;
   for (int step = 0; step < steps; ++step) {
     driven_share = 1.0 / (steps - step);
@@ -65,6 +66,11 @@ void Dynamics::Parts::Store(const Tissue& tissue, TissueState& state, AdvanceRes
   }
   if (elastic_force_is != ElasticForceIs::kOfPosition) EvaluateElastic(position, ElasticForceIs::kOfPosition);
   result.elastic_j = elastic_energy;
+  if (viscous) {
+    viscous->AddForce(position, elastic_force);
+    elastic_force_is = ElasticForceIs::kOfAnotherState;  // no longer that of strain alone
+    result.elastic_j += viscous->StoredEnergy();
+  }
   if (contact) result.contacts = contact->contact_count();
 }
 
@@ -116,6 +122,7 @@ AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin,
   if (p.StillSleeps(state)) return p.sleeping_result;
   AdvanceResult result;
   p.Load(state);
+  if (p.viscous) p.viscous->Keep();
   if (p.contact) p.contact->SetSkin(skin, p.particles, p.skin_changed);
   p.skin_changed = false;
 
@@ -124,6 +131,13 @@ AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin,
     result.status |= kStepRolledBack;
     p.elastic_force_is = Parts::ElasticForceIs::kOfAnotherState;
     solved = p.SolveSteps(tissue, p.config.solver.sub_steps << doubling, result);
+  }
+  if (!solved && p.explicit_steps) {
+    // What has been torn out of shape is too stiff for explicit steps of any length that one may wait for.
+    p.is_rescue = true;
+    p.elastic_force_is = Parts::ElasticForceIs::kOfAnotherState;
+    solved = p.SolveSteps(tissue, p.config.solver.sub_steps, result);
+    p.is_rescue = false;
   }
   if (!solved) {
     result.status |= kStepFrozen;

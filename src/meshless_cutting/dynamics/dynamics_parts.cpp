@@ -40,10 +40,10 @@ ContactScale ContactScaleOf(const DynamicsConfig& config, const Tissue& tissue, 
 }
 
 SolverChoice ChooseSolverFor(const DynamicsConfig& config, const Tissue& tissue, const LameConstants& stiffest,
-                             double contact_stiffness) {
+                             double contact_stiffness, double instantaneous_shear) {
   SolverSituation situation;
   situation.cell_m = CellOf(tissue);
-  situation.p_wave_modulus_pa = stiffest.lambda + 2 * stiffest.mu;
+  situation.p_wave_modulus_pa = stiffest.lambda + 2 * stiffest.mu + 4.0 / 3 * instantaneous_shear;
   situation.density_kg_m3 = config.material.density_kg_m3;
   for (const MaterialConfig& material : config.region_materials) {
     situation.density_kg_m3 = std::min(situation.density_kg_m3, material.density_kg_m3);
@@ -66,7 +66,10 @@ Dynamics::Parts::Parts(const DynamicsConfig& config_, const Tissue& tissue)
   if (!config.obstacles.empty()) {
     terms.push_back(&contact.emplace(config.obstacles, ContactScaleOf(config, tissue, points.lame())));
   }
-  choice = ChooseSolverFor(config, tissue, points.lame(), contact ? contact->stiffness_per_area() : 0);
+  const std::vector<MaterialConfig> materials = MaterialsOf(config);
+  if (ViscousTerm::IsNeeded(materials)) terms.push_back(&viscous.emplace(materials, pool));
+  choice = ChooseSolverFor(config, tissue, points.lame(), contact ? contact->stiffness_per_area() : 0,
+                           viscous ? viscous->instantaneous_shear_pa() : 0);
   if (choice.integrator == Integrator::kExplicit) {
     explicit_steps.emplace(points, terms, potential);
   } else if (config.damping && config.damping->stiffness_s > 0) {
@@ -82,6 +85,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   points.TissueChanged(tissue);
   elastic.TissueChanged();
   for (ForceTerm* term : terms) term->TissueChanged(particles);
+  if (viscous) viscous->TissueChanged(tissue);
   fragments.Build(tissue);
   grains.Build(tissue, fragments);
   potential.Resize(particles);

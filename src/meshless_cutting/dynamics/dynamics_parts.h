@@ -18,6 +18,7 @@
 #include "dynamics/solver_choice.h"
 #include "dynamics/stiffness_damping_term.h"
 #include "dynamics/time_scheme.h"
+#include "dynamics/viscous_term.h"
 
 namespace meshless_cutting {
 
@@ -77,6 +78,7 @@ struct Dynamics::Parts {
   ElasticPoints points;
   ElasticTerm elastic;
   std::optional<StiffnessDampingTerm> stiffness_damping;
+  std::optional<ViscousTerm> viscous;
   std::optional<ContactTerm> contact;
   std::vector<ForceTerm*> terms;
   IncrementalPotential potential;
@@ -86,6 +88,7 @@ struct Dynamics::Parts {
   Fragments fragments;
   Grains grains;
 
+  bool is_rescue = false;  // explicit steps have failed: this frame is made of steps of implicit Euler
   bool asleep = false;  // all steps of the last frame were slept through
   AdvanceResult sleeping_result;
   int particles = 0;

@@ -34,7 +34,7 @@ bool Dynamics::Parts::StillSleeps(const TissueState& state) const {
 }
 
 bool Dynamics::Parts::Sleeps(const Tissue& tissue, const TimeScheme& scheme) {
-  if (IsMoving()) return false;
+  if (IsMoving() || (viscous && !viscous->IsRelaxed())) return false;
   double fastest = 0;
   for (int j = 0; j < particles; ++j) fastest = std::max(fastest, Dot(velocity[j], velocity[j]));
   const auto& held = fragments.held;

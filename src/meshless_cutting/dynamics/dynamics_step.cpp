@@ -18,13 +18,14 @@ constexpr double kUnbalanced = 0.3;
 }  // namespace
 
 bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResult& result) {
-  const TimeScheme scheme(choice.integrator, time_step);
+  const TimeScheme scheme(is_rescue ? Integrator::kImplicitEuler : choice.integrator, time_step);
   if (Sleeps(tissue, scheme)) {
     result.relative_residual = newton.RelativeResidual(load);
     return true;
   }
   asleep = false;
-  if (!(explicit_steps ? SolveExplicit(tissue, time_step) : SolveImplicit(tissue, scheme, result))) return false;
+  const bool is_explicit = explicit_steps && !is_rescue;
+  if (!(is_explicit ? SolveExplicit(tissue, time_step) : SolveImplicit(tissue, scheme, result))) return false;
   elastic_force_is =
       elastic_force_is == ElasticForceIs::kOfTheEnd ? ElasticForceIs::kOfPosition : ElasticForceIs::kOfAnotherState;
   position.swap(end_position);
@@ -62,7 +63,8 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
 bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth) {
   if (verdict == NewtonSolver::Verdict::kFailed || residual > kUnbalanced) return true;
   if (IsMoving()) return false;  // who moves held particles puts energy in
-  return !(EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) +
+  const double stored = viscous ? viscous->StoredEnergyAt(end_position) : 0;
+  return !(stored + EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) +
                OtherEnergyOf(tissue, end_position, end_velocity) <=
            growth);
 }
@@ -145,6 +147,7 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
   motion.reach = 2 * std::sqrt(reach) / scheme.stage();
   motion.stage = scheme.stage();
   motion.step_s = scheme.time_step_s();
+  motion.elapsed_s = scheme.elapsed_s();
   for (ForceTerm* term : terms) term->BeginStep(motion);
 }
 
@@ -162,7 +165,9 @@ double Dynamics::Parts::EvaluateElastic(const Field& x, ElasticForceIs of) {
 
 double Dynamics::Parts::EnergyAtStart(const Tissue& tissue) {
   if (elastic_force_is != ElasticForceIs::kOfPosition) EvaluateElastic(position, ElasticForceIs::kOfPosition);
-  const double growth = kEnergyGrowth * (elastic_energy + OtherEnergyOf(tissue, position, velocity)) + energy_floor;
+  const double stored = viscous ? viscous->StoredEnergy() : 0;
+  const double growth =
+      kEnergyGrowth * (stored + elastic_energy + OtherEnergyOf(tissue, position, velocity)) + energy_floor;
   elastic_force_is = ElasticForceIs::kOfAnotherState;  // soon
   return growth;
 }
@@ -197,8 +202,9 @@ bool Dynamics::Parts::SolveExplicit(const Tissue& tissue, double time_step) {
                            end_acceleration)) {
     return false;
   }
+  const double stored = viscous ? viscous->StoredEnergy() : 0;
   return is_moving ||
-         EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) + OtherEnergyOf(tissue, end_position, end_velocity) <=
+         stored + EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) + OtherEnergyOf(tissue, end_position, end_velocity) <=
              growth;
 }
 

@@ -17,7 +17,7 @@ double StableStep(double cell_m, double p_wave_modulus_pa, double density_kg_m3,
 }
 
 void ExplicitSteps::Accelerate(const std::vector<double>& mass, const Forces& forces, const Field& x, const Field& v,
-                               double step_s, Field& a) {
+                               double step_s, bool is_made, Field& a) {
   const int count = static_cast<int>(x.size());
   std::fill(gradient_.begin(), gradient_.end(), Vector4());
   if (!terms_.empty()) {
@@ -27,6 +27,8 @@ void ExplicitSteps::Accelerate(const std::vector<double>& mass, const Forces& fo
     motion.still = &x;
     motion.start = &x;
     motion.step_s = step_s;
+    motion.elapsed_s = is_made ? step_s : 0;
+    motion.is_made = is_made;
     for (ForceTerm* term : terms_) {
       term->BeginStep(motion);
       term->Evaluate(x, gradient_);
@@ -56,7 +58,7 @@ bool ExplicitSteps::Run(const std::vector<double>& mass, const Forces& forces, d
     points_.Resize(tangent_);
     points_.Linearise(x, true, tangent_);
   }
-  Accelerate(mass, forces, x, v, step_s, a);
+  Accelerate(mass, forces, x, v, step_s, false, a);
   for (int step = 0; step < steps; ++step) {
     for (int j = 0; j < count; ++j) {
       if (potential_.free[j] == 0) {
@@ -70,7 +72,7 @@ bool ExplicitSteps::Run(const std::vector<double>& mass, const Forces& forces, d
       v[j] += (0.5 * step_s) * a[j];
       x[j] += step_s * v[j];
     }
-    Accelerate(mass, forces, x, v, step_s, a);
+    Accelerate(mass, forces, x, v, step_s, true, a);
     for (int j = 0; j < count; ++j) {
       if (potential_.free[j] > 0) v[j] += (0.5 * step_s) * a[j];
     }

@@ -35,7 +35,7 @@ class ExplicitSteps {
 
  private:
   void Accelerate(const std::vector<double>& mass, const Forces& forces, const Field& x, const Field& v, double step_s,
-                  Field& a);
+                  bool is_made, Field& a);
 
   ElasticPoints& points_;
   const std::vector<ForceTerm*>& terms_;

@@ -20,6 +20,9 @@ struct StageMotion {
   double reach = 0;               // m, no particle is expected to move farther
   double stage = 1;               // y = start + stage (end of the step - start)
   double step_s = 0;              // time step
+  double elapsed_s = 0;           // time that passes in it, for what remembers
+  // Explicit steps ask for forces at the end of a step: `start` is there already, what remembers begins where its last step ended.
+  bool is_made = false;
 };
 
 /// A term Phi(y) of the potential whose minimum over the stage positions y is the step. Loops over particles or points are

@@ -8,7 +8,8 @@ constexpr double kStaticStep = 10;
 
 }  // namespace
 
-TimeScheme::TimeScheme(Integrator integrator, double time_step_s, bool is_cautious) : dt_(time_step_s) {
+TimeScheme::TimeScheme(Integrator integrator, double time_step_s, bool is_cautious)
+    : elapsed_(time_step_s), dt_(time_step_s) {
   is_static_ = integrator == Integrator::kQuasiStatic;
   if (is_static_) dt_ = kStaticStep;
   if (is_static_ || integrator == Integrator::kImplicitEuler) {

@@ -24,6 +24,7 @@ class TimeScheme {
   double inertia() const { return (1 - alpha_m_) / (beta_ * dt_ * dt_ * (1 - alpha_f_)); }  // 1/s^2
   double rate() const { return gamma_ / (beta_ * dt_); }  // 1/s: velocity at the stage = rate (y - Still)
   double time_step_s() const { return dt_; }
+  double elapsed_s() const { return elapsed_; }  // time that passes: of a static step what was asked for
   double stage() const { return 1 - alpha_f_; }  // the stage's place in the step
   bool is_static() const { return is_static_; }  // velocities mean nothing
 
@@ -61,7 +62,7 @@ class TimeScheme {
   }
 
  private:
-  double dt_, alpha_m_, alpha_f_, beta_, gamma_, predict_;
+  double elapsed_, dt_, alpha_m_, alpha_f_, beta_, gamma_, predict_;
   bool is_static_ = false;
 };
 

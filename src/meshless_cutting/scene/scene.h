@@ -43,11 +43,18 @@ struct TimeTable {
 
 enum class MaterialModel { kStableNeoHookean, kNeoHookean, kStVenantKirchhoff, kLinear };
 
+/// One Maxwell branch of a Prony series.
+struct PronyBranch {
+  double modulus_ratio = 0;      // its shear modulus over that of the material, which is what remains when it has relaxed
+  double relaxation_time_s = 0;
+};
+
 struct MaterialConfig {
   MaterialModel model = MaterialModel::kStableNeoHookean;
   double youngs_modulus_pa = 0;
   double poisson_ratio = 0;
   double density_kg_m3 = 0;
+  std::vector<PronyBranch> prony = {};  // viscoelasticity; empty: none
 };
 
 /// Shapes that need no mesh file. All in the object frame.

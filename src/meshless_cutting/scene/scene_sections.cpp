@@ -9,6 +9,15 @@ namespace {
 // Physical limits wide enough for every tissue and organ; outside of them a unit is wrong.
 const NumberRange kSize = {1e-5, 10, false, false};  // m
 
+PronyBranch ReadPronyBranch(const YamlValue& value) {
+  const YamlSection section(value, {"modulus_ratio", "relaxation_time_s"});
+  PronyBranch branch;
+  branch.modulus_ratio = section.Get("modulus_ratio")
+                             .Number({0, 100, true, false}, "stiffness of the branch over that of the relaxed material");
+  branch.relaxation_time_s = section.Get("relaxation_time_s").Number({1e-4, 1e6, false, false}, "in s");
+  return branch;
+}
+
 double ReadFriction(const YamlSection& section) {
   const auto friction = section.Find("friction");
   return friction ? friction->Number(NumberRange::Closed(0, 10), "Coulomb's coefficient") : 0;
@@ -23,7 +32,7 @@ std::vector<std::string> ObjectKeys() {
 }
 
 MaterialConfig ReadMaterial(const YamlValue& value) {
-  const YamlSection section(value, {"model", "youngs_modulus_pa", "poisson_ratio", "density_kg_m3"});
+  const YamlSection section(value, {"model", "youngs_modulus_pa", "poisson_ratio", "density_kg_m3", "prony"});
   MaterialConfig material;
   if (const auto model = section.Find("model")) {
     const std::map<std::string, MaterialModel> models = {{"stable_neo_hookean", MaterialModel::kStableNeoHookean},
@@ -41,6 +50,9 @@ MaterialConfig ReadMaterial(const YamlValue& value) {
           .Number(NumberRange::Open(-1, 0.5), "0.5 would be incompressible; take 0.45 to 0.49 for tissue");
   material.density_kg_m3 =
       section.Get("density_kg_m3").Number({1, 1e5, false, false}, "in kg/m^3: tissue has about 1050");
+  if (const auto prony = section.Find("prony")) {
+    for (const YamlValue& item : prony->List()) material.prony.push_back(ReadPronyBranch(item));
+  }
   return material;
 }
 

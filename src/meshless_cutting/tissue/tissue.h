@@ -25,6 +25,9 @@ struct Tissue {
   std::vector<int> point_particles;             // K per point
   std::vector<Eigen::Vector3d> point_gradients;  // K per point, dphi/dX at X_p, 1/m
 
+  std::vector<int> point_origin;                 // the point that it was split from, lower than its own index, or -1; empty: all -1
+
+  int origin(int p) const { return point_origin.empty() ? -1 : point_origin[p]; }
   int material(int p) const { return point_material.empty() ? 0 : point_material[p]; }
 
   std::uint64_t version = 0;  // +1 whenever anything above changed
