@@ -204,7 +204,7 @@ TEST(Viscous, TheEnergyOfAFreeBodyOnlyFalls) {
       ASSERT_LT(energy, last + (integrator == Integrator::kImplicitEuler ? 1e-3 : 1e-2) * start) << n << " " << static_cast<int>(integrator);
       last = std::min(last, energy);
     }
-    EXPECT_LT(last, 0.2 * start);  // what is left is rigid motion
+    EXPECT_LT(last, 0.4 * start);  // what is left is rigid motion and modes that strain no point
   }
 }
 
