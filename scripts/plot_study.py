@@ -4,6 +4,7 @@ import collections
 import csv
 import math
 import pathlib
+import re
 import sys
 
 import matplotlib
@@ -19,6 +20,13 @@ plt.rcParams.update({'font.size': 9, 'axes.grid': True, 'grid.alpha': 0.3, 'line
 TITLES = {'cantilever': 'cantilever: tip', 'stretch': 'clamped stretch 1.5: force', 'squeeze': 'clamped squeeze 0.7: force',
           'torsion': 'torsion 90°: torque', 'torsion_half_turn': 'torsion 180°: torque', 'cook': "Cook's panel: corner",
           'slit_beam': 'slit beam: mouth', 'slit_block': 'slit block: mouth'}
+
+
+STAGES = ('crossings', 'cut', 'dynamics', 'surface')
+
+
+def title_of(problem, ratio):
+    return TITLES.get(problem, problem) + (f', ν {ratio:g}' if problem == 'cook' else '')
 
 
 def number(text):
@@ -79,11 +87,11 @@ def save(figure, folder, name, header):
 
 
 def error_against_time(rows, folder, header):
-    groups = by(base_case(rows), lambda r: r['problem'])
+    groups = by(base_case(rows), lambda r: (r['problem'], r['poisson_ratio']))
     figure, panes = plt.subplots(1, 2, figsize=(9, 3.6), sharex=True)
     for axes, column, title in zip(panes, ('error_discretisation', 'error_field'),
                                    ('value that the problem is judged by', 'displacement field, relative $L_2$ of samples')):
-        draw(axes, groups, 'wall_ms_per_frame_p50', column, lambda k: TITLES.get(k, k))
+        draw(axes, groups, 'wall_ms_per_frame_p50', column, lambda k: title_of(*k))
         axes.set(xscale='log', yscale='log', xlabel='wall time per frame of 1/60 s, median [ms]',
                  ylabel='discretisation error [%]')
         axes.set_title(title, fontsize=9)
@@ -94,9 +102,9 @@ def error_against_time(rows, folder, header):
 
 
 def convergence(rows, folder, header):
-    groups = by(base_case(rows), lambda r: r['problem'])
+    groups = by(base_case(rows), lambda r: (r['problem'], r['poisson_ratio']))
     figure, axes = plt.subplots(figsize=(5.2, 3.6))
-    draw(axes, groups, 'particles', 'error_discretisation', lambda k: TITLES.get(k, k))
+    draw(axes, groups, 'particles', 'error_discretisation', lambda k: title_of(*k))
     axes.set(xscale='log', yscale='log', xlabel='particles', ylabel='discretisation error [%]')
     axes.legend(loc='center left', bbox_to_anchor=(1.01, 0.5), frameon=False)
     save(figure, folder, 'convergence', header)
@@ -104,8 +112,8 @@ def convergence(rows, folder, header):
 
 def solver_error(rows, folder, header):
     rows = [r for r in rows if r['error_solver'] > 0 or (r['failed'] and r['problem'] == 'cantilever')]
-    sweep = [r for r in rows if r['youngs_modulus_pa'] in (1e4, 1e7)]
-    stiff = [r for r in rows if r not in sweep]
+    sweep = [r for r in rows if r['particles'] > 2000]
+    stiff = [r for r in rows if r['particles'] < 2000]
     figure, panes = plt.subplots(1, 2 if stiff else 1, figsize=(9 if stiff else 5.2, 3.6), squeeze=False)
     panes = panes[0]
     groups = by(sorted(sweep, key=lambda r: (r['youngs_modulus_pa'], r['poisson_ratio'], r['particles'])),
@@ -113,15 +121,15 @@ def solver_error(rows, folder, header):
     draw(panes[0], groups, 'wall_ms_per_frame_p50', 'error_solver',
          lambda k: f'{k[0]:.0f} particles, {k[1] / 1000:g} kPa, ν {k[2]:g}')
     panes[0].set(xscale='log', yscale='log', xlabel='wall time per frame, median [ms]', ylabel='solver error, rms of the tip [%]')
-    panes[0].set_title('1, 2, 4 Newton iterations at most', fontsize=9)
+    panes[0].set_title('1, 2, 4, 8 Newton iterations at most', fontsize=9)
     deadline(panes[0])
-    panes[0].legend(frameon=False, fontsize=6)
+    panes[0].legend(frameon=False, fontsize=6, loc='center left', bbox_to_anchor=(1.0, 0.5))
     if not stiff:
         save(figure, folder, 'solver_error', header)
         return
     draw(panes[1], by(stiff, lambda r: r['poisson_ratio']), 'youngs_modulus_pa', 'error_solver', lambda k: f'ν {k:g}')
     panes[1].set(xscale='log', yscale='log', xlabel="Young's modulus [Pa]", ylabel='solver error, rms of the tip [%]')
-    panes[1].set_title('default solver, 3,321 particles', fontsize=9)
+    panes[1].set_title('default solver, 1,519 particles', fontsize=9)
     panes[1].legend(frameon=False)
     figure.tight_layout()
     save(figure, folder, 'solver_error', header)
@@ -145,6 +153,29 @@ def swing(rows, folder, header):
     save(figure, folder, 'swing', header)
 
 
+def cut_frames(rows, folder, header):
+    """Time of the frames that cut by stage: median as bars, 99th percentile and longest as marks."""
+    rows = [r for r in rows if r['problem'].startswith('cut_') and not r['failed']]
+    figure, axes = plt.subplots(figsize=(6.4, 3.4))
+    for n, row in enumerate(rows):
+        times = {stage: [float(v) for v in re.search(stage + r' p50 (\S+) p99 (\S+) max ([^;\s]+)', row['note']).groups()]
+                 for stage in (*STAGES, 'total')}
+        low = 0
+        for stage, colour in zip(STAGES, ('#4477aa', '#ee6677', '#228833', '#ccbb44')):
+            axes.bar(n, times[stage][0], 0.55, low, color=colour, label=stage if n == 0 else None)
+            low += times[stage][0]
+        axes.plot(n, times['total'][1], '_k', markersize=16, label='p99' if n == 0 else None)
+        axes.plot(n, times['total'][2], 'xk', label='longest' if n == 0 else None)
+    axes.axhline(DEADLINE_MS, color='0.35', linestyle='--', linewidth=1)
+    axes.annotate('16.7 ms', (1, DEADLINE_MS), xycoords=axes.get_yaxis_transform(), fontsize=7.5, color='0.35', ha='right', va='bottom')
+    axes.set(ylabel='wall time of a frame that cuts [ms]', yscale='symlog', xticks=range(len(rows)))
+    axes.set_ylim(0, None)
+    axes.set_xticklabels([f"{r['problem'][4:]}\n{r['particles']:.0f} particles" for r in rows])
+    axes.grid(axis='x', visible=False)
+    axes.legend(frameon=False, loc='center left', bbox_to_anchor=(1.01, 0.5))
+    save(figure, folder, 'cut_frames', header)
+
+
 def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
@@ -155,6 +186,7 @@ def main():
     figures = {'error_against_time': (error_against_time, any(True for _ in base_case(rows))),
                'convergence': (convergence, any(True for _ in base_case(rows))),
                'solver_error': (solver_error, any(r['error_solver'] > 0 for r in rows)),
+               'cut_frames': (cut_frames, any(r['problem'].startswith('cut_') and not r['failed'] for r in rows)),
                'swing': (swing, any(r['problem'] == 'swing' for r in rows))}
     for name, (make, has_rows) in figures.items():
         if has_rows:
