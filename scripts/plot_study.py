@@ -155,7 +155,7 @@ def swing(rows, folder, header):
 
 def cut_frames(rows, folder, header):
     """Time of the frames that cut by stage: median as bars, 99th percentile and longest as marks."""
-    rows = [r for r in rows if r['problem'].startswith('cut_') and not r['failed']]
+    rows = sorted((r for r in rows if r['problem'].startswith('cut_') and not r['failed']), key=lambda r: (r['problem'], r['particles']))
     figure, axes = plt.subplots(figsize=(6.4, 3.4))
     for n, row in enumerate(rows):
         times = {stage: [float(v) for v in re.search(stage + r' p50 (\S+) p99 (\S+) max ([^;\s]+)', row['note']).groups()]
@@ -164,13 +164,13 @@ def cut_frames(rows, folder, header):
         for stage, colour in zip(STAGES, ('#4477aa', '#ee6677', '#228833', '#ccbb44')):
             axes.bar(n, times[stage][0], 0.55, low, color=colour, label=stage if n == 0 else None)
             low += times[stage][0]
-        axes.plot(n, times['total'][1], '_k', markersize=16, label='p99' if n == 0 else None)
-        axes.plot(n, times['total'][2], 'xk', label='longest' if n == 0 else None)
+        axes.plot(n, times['total'][1], '_k', markersize=16, linestyle='', label='p99' if n == 0 else None)
+        axes.plot(n, times['total'][2], 'xk', linestyle='', label='longest' if n == 0 else None)
     axes.axhline(DEADLINE_MS, color='0.35', linestyle='--', linewidth=1)
-    axes.annotate('16.7 ms', (1, DEADLINE_MS), xycoords=axes.get_yaxis_transform(), fontsize=7.5, color='0.35', ha='right', va='bottom')
-    axes.set(ylabel='wall time of a frame that cuts [ms]', yscale='symlog', xticks=range(len(rows)))
+    axes.annotate('16.7 ms', (1.01, DEADLINE_MS), xycoords=axes.get_yaxis_transform(), fontsize=7.5, color='0.35', ha='left', va='center')
+    axes.set(xlabel='particles', ylabel='wall time of a frame that cuts [ms]', xticks=range(len(rows)))
     axes.set_ylim(0, None)
-    axes.set_xticklabels([f"{r['problem'][4:]}\n{r['particles']:.0f} particles" for r in rows])
+    axes.set_xticklabels([f"{r['problem'][4:]}\n{r['particles']:,.0f}" for r in rows])
     axes.grid(axis='x', visible=False)
     axes.legend(frameon=False, loc='center left', bbox_to_anchor=(1.01, 0.5))
     save(figure, folder, 'cut_frames', header)

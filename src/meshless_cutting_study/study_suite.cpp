@@ -115,7 +115,7 @@ void AddFull(Suite& suite) {
     suite.Balance(Case("cantilever", 1e4, 0.3, 0.02 / across));
     suite.Balance(Case("cantilever", 1e6, 0.45, 0.02 / across));
   }
-  for (double cell : {0.0065, 0.0085}) suite.CutFrames(Case("cut_liver", 5e3, 0.45, cell, Model::kStableNeoHookean));
+  for (double cell : {0.0046, 0.0065, 0.0085}) suite.CutFrames(Case("cut_liver", 5e3, 0.45, cell, Model::kStableNeoHookean));
   for (double cell : {0.008, 0.005, 0.004}) suite.CutFrames(Case("cut_block", 2e4, 0.4, cell, Model::kStableNeoHookean));
   for (double modulus : {1e4, 1e7}) {
     for (double ratio : {0.45, 0.49}) {
