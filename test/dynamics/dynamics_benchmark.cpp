@@ -20,7 +20,7 @@ BoxTissueConfig Cube(int n) {
   return config;
 }
 
-constexpr MaterialConfig kSoft{MaterialModel::kStableNeoHookean, 5e3, 0.45, 1050};
+const MaterialConfig kSoft{MaterialModel::kStableNeoHookean, 5e3, 0.45, 1050};
 
 struct Loop {
   explicit Loop(const benchmark::State& state)
