@@ -21,7 +21,7 @@ DEBIAN_PACKAGES=(
   ros-tf2-msgs ros-visualization-msgs
   rosbash rosout rospack-tools tf2-tools
   python3-numpy python3-rosbag python3-roslaunch python3-rosmsg python3-rosnode python3-rosservice python3-rostest
-  python3-rostopic python3-std-srvs python3-visualization-msgs ros-robot-state-publisher
+  python3-rostopic python3-sensor-msgs python3-std-srvs python3-visualization-msgs ros-robot-state-publisher
   catkin-lint python3-dynamic-reconfigure python3-matplotlib rviz)
 NOETIC_PACKAGES=(
   build-essential cmake pkg-config
