@@ -139,7 +139,7 @@ TEST_F(DriversTest, TheHandFeelsAForceThatIsLimitedAndEndsWithTheTrust) {
   EXPECT_GT(largest, 0.05);
   EXPECT_LE(largest, 2 + 1e-9);
   Pause(true);
-  EXPECT_TRUE(Until([&] { return norm(wrenches.back()) == 0; })) << "zero at the pause";
+  EXPECT_TRUE(Until([&] { return norm(wrenches.back()) == 0; }, 1)) << "zero at the pause";
   Pause(false);
   EXPECT_EQ(std::count_if(events_.begin(), events_.end(), [](const auto& e) { return e->event == CutEvent::STARTED; }),
             1);
