@@ -9,47 +9,51 @@
 #include "dynamics/aggregates.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/fragments.h"
-#include "dynamics/skyline_cholesky.h"
+#include "dynamics/block_cholesky.h"
 #include "support/box_tissue.h"
 
 namespace meshless_cutting {
 namespace {
 
-TEST(SkylineCholesky, SolvesWhatADenseSolverSolves) {
-  const int n = 80;
+TEST(BlockCholesky, SolvesWhatADenseSolverSolves) {
+  const std::vector<int> first = {0, 0, 1, 0, 3, 2, 6};
+  const int n = BlockCholesky::kBlock * static_cast<int>(first.size());
   std::mt19937 generator(2);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<int> first(n);
-  for (int i = 0; i < n; ++i) first[i] = std::max(0, i - 5 - i % 17);
+  BlockCholesky factor;
+  factor.Reset(first);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {
-    for (int j = first[i]; j < i; ++j) A(i, j) = A(j, i) = uniform(generator);
+    for (int j = BlockCholesky::kBlock * first[i / BlockCholesky::kBlock]; j < i; ++j) A(i, j) = A(j, i) = uniform(generator);
     A(i, i) = 30;
   }
-  SkylineCholesky skyline;
-  skyline.Reset(first);
   for (int i = 0; i < n; ++i) {
-    for (int j = first[i]; j <= i; ++j) skyline.At(i, j) = A(i, j);
+    for (int j = BlockCholesky::kBlock * first[i / BlockCholesky::kBlock]; j <= i; ++j) factor.At(i, j) = A(i, j);
   }
-  skyline.Factor();
+  factor.Factor();
   Eigen::VectorXd b(n);
   for (int i = 0; i < n; ++i) b[i] = uniform(generator);
   Eigen::VectorXd x = b;
-  skyline.Solve(x.data());
+  factor.Solve(x.data());
   EXPECT_LT((A * x - b).norm(), 1e-13 * n);
 }
 
-TEST(SkylineCholesky, TakesOutRowsWithoutPivot) {
-  SkylineCholesky skyline;
-  skyline.Reset({0, 0, 0});
-  skyline.At(0, 0) = 4;  // row 1 stays zero
-  skyline.At(2, 2) = 9;
-  skyline.Factor();
-  double x[3] = {4, 5, 9};
-  skyline.Solve(x);
-  EXPECT_DOUBLE_EQ(x[0], 1);
+TEST(BlockCholesky, TakesOutRowsWithoutPivot) {
+  // Row 1 stays zero, row 15 equals row 14; of both nothing comes back, and nothing goes wrong elsewhere.
+  const int n = 2 * BlockCholesky::kBlock;
+  BlockCholesky factor;
+  factor.Reset({0, 0});
+  for (int i = 0; i < n; ++i) factor.At(i, i) = i == 1 ? 0 : 4;
+  factor.At(14, 3) = factor.At(15, 3) = 1;
+  factor.At(15, 14) = 4;
+  factor.Factor();
+  std::vector<double> x(n, 8);
+  factor.Solve(x.data());
   EXPECT_EQ(x[1], 0);
-  EXPECT_DOUBLE_EQ(x[2], 1);
+  EXPECT_EQ(x[15], 0);
+  EXPECT_NEAR(x[0], 2, 1e-14);
+  EXPECT_NEAR(4 * x[3] + x[14], 8, 1e-14);
+  EXPECT_NEAR(x[3] + 4 * x[14], 8, 1e-14);
 }
 
 /// Two boxes side by side in one tissue, joined nowhere though their particles coincide: a cut through.

@@ -7,8 +7,6 @@ namespace meshless_cutting {
 void CoarseMatrix::Build(const Tissue& tissue, const std::vector<double>& free, int wanted_aggregates) {
   aggregates_.Build(tissue, free, wanted_aggregates);
   ListPoints(tissue);
-  first_unknown_.resize(size());
-  for (int i = 0; i < size(); ++i) first_unknown_[i] = kUnknowns * first_[i / kUnknowns];
   Clear();
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dynamics/aggregates.h"
-#include "dynamics/skyline_cholesky.h"
+#include "dynamics/block_cholesky.h"
 
 namespace meshless_cutting {
 
@@ -13,7 +13,7 @@ namespace meshless_cutting {
 class CoarseMatrix {
  public:
   static constexpr int kFunctions = 4;
-  static constexpr int kUnknowns = 12;  // per aggregate
+  static constexpr int kUnknowns = BlockCholesky::kBlock;  // per aggregate
 
   const Aggregates& aggregates() const { return aggregates_; }
   int size() const { return kUnknowns * aggregates_.count(); }
@@ -25,7 +25,7 @@ class CoarseMatrix {
   /// it.
   void Extend(const Tissue& tissue, const std::vector<double>& free) { aggregates_.Extend(tissue, free); }
 
-  void Clear() { factor_.Reset(first_unknown_); }
+  void Clear() { factor_.Reset(first_); }
 
   /// The points that have particles of aggregate a: points()[points_begin(a)] ... points()[points_begin(a + 1) - 1].
   const std::vector<int>& points() const { return points_; }
@@ -47,9 +47,9 @@ class CoarseMatrix {
   void ListPoints(const Tissue& tissue);
 
   Aggregates aggregates_;
-  std::vector<int> first_, first_unknown_;
+  std::vector<int> first_;
   std::vector<int> points_, points_begin_;
-  SkylineCholesky factor_;
+  BlockCholesky factor_;
 };
 
 }  // namespace meshless_cutting
