@@ -42,7 +42,8 @@ bool Dynamics::Parts::Sleeps(const Tissue& tissue, const TimeScheme& scheme) {
   if (std::sqrt(fastest) * scheme.time_step_s() > kSleepingWay * cell) return false;
   std::fill(scratch.begin(), scratch.end(), Vector4());
   Prepare(tissue, scheme, scratch, scratch);
-  newton.Start(position);
+  newton.Begin();
+  newton.Offer(position);
   if (!newton.StartIsConverged(load)) return false;
   for (ForceTerm* term : terms) term->EndStep(position);
   velocity = acceleration = scratch;

@@ -10,10 +10,12 @@ namespace {
 /// overshot.
 constexpr double kEnergyGrowth = 1.2;
 
-/// So has one that leaves as much of the forces: a body that is turned inside out, say, or a small piece that spins
-/// faster than the scheme can follow, whose unbalanced steps would blow it up. A residual that is merely large is no
-/// reason: the step is repeated no better, and implicit Euler takes a fifth of a soft beam's swing away.
+/// One that leaves so much of the forces is tried again with the cautious scheme, which does not go beyond its stage.
 constexpr double kUnbalanced = 0.3;
+
+/// One that leaves as much as this has gone wrong: a body that is turned inside out, say. Less is no reason for implicit
+/// Euler, which takes a fifth of a soft beam's swing away.
+constexpr double kLost = 0.95;
 
 }  // namespace
 
@@ -45,7 +47,7 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
   const bool is_second_order = choice.integrator == Integrator::kGeneralizedAlpha;
   const double growth = is_second_order ? EnergyAtStart(tissue) : 0;
   NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
-  if (is_second_order && IsBad(tissue, verdict, result.relative_residual, growth)) {
+  if (is_second_order && (result.relative_residual > kUnbalanced || IsBad(tissue, verdict, result.relative_residual, growth))) {
     // The end of a generalised-alpha step lies beyond the stage that was solved for. After violence that is no place to
     // go.
     verdict = Attempt(tissue, TimeScheme(choice.integrator, scheme.time_step_s(), true), result);
@@ -61,7 +63,7 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
 }
 
 bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth) {
-  if (verdict == NewtonSolver::Verdict::kFailed || residual > kUnbalanced) return true;
+  if (verdict == NewtonSolver::Verdict::kFailed || residual > kLost) return true;
   if (IsMoving()) return false;  // who moves held particles puts energy in
   const double stored = viscous ? viscous->StoredEnergyAt(end_position) : 0;
   return !(stored + EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) +
@@ -74,21 +76,16 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
 
   // Begin where the object already is on its way, or where it goes without forces, or where it is: the lowest. The last
   // bounds the energy of a step whose iterations run out.
-  stage = steady;
-  double energy = newton.Start(stage);
+  newton.Begin();
+  newton.Offer(steady);
+  const Field* best = &steady;
+  const bool is_driven = !driven_end.empty();
   if (!newton.StartIsConverged(load)) {
-    const Field* best = &steady;
-    const bool is_driven = !driven_end.empty();
     for (const Field* guess : {&potential.target, &position}) {
-      const double other = newton.Start(is_driven ? Held(*guess) : *guess);
-      if (other < energy) {
-        energy = other;
-        best = guess;
-      }
+      if (newton.Offer(is_driven ? Held(*guess) : *guess)) best = guess;
     }
-    stage = is_driven ? Held(*best) : *best;
-    if (best != &position) newton.Start(stage);
   }
+  stage = is_driven ? Held(*best) : *best;
   newton.BeginStep(tissue);
   const NewtonSolver::Result solved = newton.Minimise(stage, load);
   result.newton_iterations += solved.newton_iterations;

@@ -39,10 +39,25 @@ void NewtonSolver::TissueChanged(const Tissue& tissue) {
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
 }
 
-double NewtonSolver::Start(const Field& y) {
-  energy_ = potential_.Evaluate(y, gradient_, norms_);
-  if (!std::isfinite(energy_) || !std::isfinite(norms_.residual)) energy_ = std::numeric_limits<double>::infinity();
-  return energy_;
+void NewtonSolver::Begin() { energy_ = std::numeric_limits<double>::infinity(); }
+
+bool NewtonSolver::Offer(const Field& y) {
+  IncrementalPotential::Norms norms;
+  const double energy = potential_.Evaluate(y, trial_gradient_, norms);
+  if (!(energy < energy_) || !std::isfinite(norms.residual)) return false;
+  energy_ = energy;
+  norms_ = norms;
+  gradient_.swap(trial_gradient_);
+  return true;
+}
+
+template <class Task>
+double NewtonSolver::SumOver(const Task& task) {
+  const int count = potential_.size(), chunks = ChunkCount(count, kParticlesPerChunk);
+  potential_.pool().ForEach(chunks, [&](int c) { chunk_sums_[c] = task(ParticleRange(c, count)); });
+  double sum = 0;
+  for (double s : chunk_sums_) sum += s;
+  return sum;
 }
 
 double NewtonSolver::RelativeResidual(double load) const {
@@ -65,13 +80,6 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
   const int count = potential_.size();
   ThreadPool& pool = potential_.pool();
   const int chunks = ChunkCount(count, kParticlesPerChunk);
-  const auto sum_of = [&](auto&& task) {
-    pool.ForEach(chunks, [&](int c) { chunk_sums_[c] = task(ParticleRange(c, count)); });
-    double sum = 0;
-    for (double s : chunk_sums_) sum += s;
-    return sum;
-  };
-
   for (int j = 0; j < count; ++j) {
     step_[j] = Vector4();
     residual_[j] = -1.0 * gradient_[j];
@@ -91,7 +99,7 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
       break;
     }
     const double alpha = rz / curvature;
-    const double rr = sum_of([&](const ParticleRange& range) {
+    const double rr = SumOver([&](const ParticleRange& range) {
       return AdvanceSolution(range, alpha, direction_.data(), product_.data(), step_.data(), residual_.data());
     });
     reached = rr;
@@ -110,10 +118,9 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
 NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
   Result result;
   if (!std::isfinite(energy_)) return result;
-  const int count = potential_.size();
   for (;;) {
     result.relative_residual = RelativeResidual(load);
-    if (result.relative_residual <= tolerance_) {
+    if (result.relative_residual <= (result.newton_iterations == 0 ? kAtStart * tolerance_ : tolerance_)) {
       result.verdict = Verdict::kConverged;
       return result;
     }
@@ -126,14 +133,20 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
     preconditioner_.Refresh(potential_);
     result.linear_iterations += SolveLinear(y, result.relative_residual);
 
-    double slope = 0;
-    for (int j = 0; j < count; ++j) slope += Dot(gradient_[j], step_[j]);
+    const double slope = SumOver([&](const ParticleRange& range) {
+      double sum = 0;
+      for (int j = range.begin; j < range.end; ++j) sum += Dot(gradient_[j], step_[j]);
+      return sum;
+    });
     bool accepted = false;
     const IncrementalPotential::Norms old_norms = norms_;
     if (slope < 0) {
       double share = 1;
       for (int halving = 0; halving <= kHalvings && !accepted; ++halving, share *= 0.5) {
-        for (int j = 0; j < count; ++j) trial_[j] = y[j] + share * step_[j];
+        potential_.pool().ForEach(ChunkCount(potential_.size(), kParticlesPerChunk), [&](int c) {
+          const ParticleRange range(c, potential_.size());
+          for (int j = range.begin; j < range.end; ++j) trial_[j] = y[j] + share * step_[j];
+        });
         const double energy = potential_.Evaluate(trial_, trial_gradient_, norms_);
         if (!std::isfinite(energy) || !std::isfinite(norms_.residual)) continue;
         const double rounding = energy_rounding_ + kEnergyRounding * (std::abs(energy_) + std::abs(energy));

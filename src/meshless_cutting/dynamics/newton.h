@@ -34,7 +34,7 @@ class NewtonSolver {
     double relative_residual = 0;
   };
 
-  /// Minimises from y. The residual is measured against the forces in the object: the norm of the terms' gradient plus
+  /// Minimises from y, the place that was taken last. The residual is measured against the forces in the object: the norm of the terms' gradient plus
   /// `load`, N, below which nothing is worth moving.
   Result Minimise(Field& y, double load);
 
@@ -44,15 +44,26 @@ class NewtonSolver {
   /// The gradient at the y that Minimise left, N.
   const Field& residual() const { return gradient_; }
 
-  /// Evaluates y as the start of Minimise, which then need not: energy, J, infinite if y is unusable.
-  double Start(const Field& y);
-  bool StartIsConverged(double load) const { return std::isfinite(energy_) && RelativeResidual(load) <= tolerance_; }
+  // Before Minimise: Begin, then Offer the places where it may begin. It begins at the last that was taken.
+  void Begin();
+  /// Evaluates y, and takes it if its energy is finite and lower than that of those before.
+  bool Offer(const Field& y);
+  /// Whether the place taken is so good that nothing need be done. Stricter than Minimise: otherwise a body would hang
+  /// off its balance by the tolerance for ever.
+  bool StartIsConverged(double load) const {
+    return std::isfinite(energy_) && RelativeResidual(load) <= kAtStart * tolerance_;
+  }
 
  private:
+  static constexpr double kAtStart = 0.1;
+
   /// The Newton step at y, with the exact tangent where that proves definite. Returns the linear iterations.
   int SolveLinear(const Field& y, double relative_residual);
   /// is_definite: false if a direction of negative curvature ended the iterations.
   int ConjugateGradients(double relative_tolerance, bool& is_definite);
+  /// Sum of what `task` returns for each range of particles, in parallel.
+  template <class Task>
+  double SumOver(const Task& task);
 
   IncrementalPotential& potential_;
   double tolerance_;
