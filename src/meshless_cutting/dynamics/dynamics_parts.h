@@ -51,8 +51,9 @@ struct Dynamics::Parts {
   /// As SolveImplicit, in many small steps. False also when the energy grows: the steps were too long for what the
   /// object has become.
   bool SolveExplicit(const Tissue& tissue, double time_step);
-  /// One step of `scheme` from position, velocity, acceleration into those of the end.
-  NewtonSolver::Verdict Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
+  /// One step of `scheme` from position, velocity, acceleration into those of the end; in up to `rounds` of Newton's
+  /// method while the forces are far from balance.
+  NewtonSolver::Verdict Attempt(const Tissue& tissue, const TimeScheme& scheme, int rounds, AdvanceResult& result);
   /// Sets up the step from position with the given velocities and accelerations.
   void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
   /// A copy of y (in scratch) with the held particles where the step wants them.

@@ -10,7 +10,8 @@ namespace {
 /// overshot.
 constexpr double kEnergyGrowth = 1.2;
 
-/// One that leaves so much of the forces is tried again with the cautious scheme, which does not go beyond its stage.
+/// One that leaves so much of the forces gets as many iterations again, and is then made anew with the cautious scheme,
+/// which does not go beyond its stage.
 constexpr double kUnbalanced = 0.3;
 
 /// One that leaves as much as this has gone wrong: a body that is turned inside out, say. Less is no reason for implicit
@@ -46,13 +47,13 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
 bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
   const bool is_second_order = choice.integrator == Integrator::kGeneralizedAlpha;
   const double growth = is_second_order ? EnergyAtStart(tissue) : 0;
-  NewtonSolver::Verdict verdict = Attempt(tissue, scheme, result);
+  NewtonSolver::Verdict verdict = Attempt(tissue, scheme, is_second_order ? 2 : 1, result);
   if (is_second_order && (result.relative_residual > kUnbalanced || IsBad(tissue, verdict, result.relative_residual, growth))) {
     // The end of a generalised-alpha step lies beyond the stage that was solved for. After violence that is no place to
     // go.
-    verdict = Attempt(tissue, TimeScheme(choice.integrator, scheme.time_step_s(), true), result);
+    verdict = Attempt(tissue, TimeScheme(choice.integrator, scheme.time_step_s(), true), 1, result);
     if (IsBad(tissue, verdict, result.relative_residual, growth)) {
-      verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, scheme.time_step_s()), result);
+      verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, scheme.time_step_s()), 1, result);
       elastic_force_is = ElasticForceIs::kOfAnotherState;
     }
   }
@@ -71,7 +72,8 @@ bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict,
            growth);
 }
 
-NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
+NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeScheme& scheme, int rounds,
+                                               AdvanceResult& result) {
   Prepare(tissue, scheme, velocity, acceleration);
 
   // Begin where the object already is on its way, or where it goes without forces, or where it is: the lowest. The last
@@ -87,9 +89,13 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
   }
   stage = is_driven ? Held(*best) : *best;
   newton.BeginStep(tissue);
-  const NewtonSolver::Result solved = newton.Minimise(stage, load);
-  result.newton_iterations += solved.newton_iterations;
-  result.linear_iterations += solved.linear_iterations;
+  NewtonSolver::Result solved;
+  for (int round = 0; round < rounds; ++round) {
+    solved = newton.Minimise(stage, load);
+    result.newton_iterations += solved.newton_iterations;
+    result.linear_iterations += solved.linear_iterations;
+    if (solved.verdict != NewtonSolver::Verdict::kNotConverged || solved.relative_residual <= kUnbalanced) break;
+  }
   result.relative_residual = solved.relative_residual;
   if (solved.verdict == NewtonSolver::Verdict::kFailed) return solved.verdict;
 
