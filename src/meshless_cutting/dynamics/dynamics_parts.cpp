@@ -95,6 +95,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
     field->resize(particles);
   }
   cell = CellOf(tissue);
+  light.Build(tissue, cell);
   for (int j = 0; j < particles; ++j) {
     // A particle without mass is one that all its points have left for a twin.
     potential.free[j] = !tissue.particle_fixed[j] && tissue.particle_mass[j] > 0 ? 1 : 0;

@@ -14,6 +14,7 @@
 #include "dynamics/explicit_steps.h"
 #include "dynamics/fragments.h"
 #include "dynamics/grains.h"
+#include "dynamics/light_particles.h"
 #include "dynamics/newton.h"
 #include "dynamics/solver_choice.h"
 #include "dynamics/stiffness_damping_term.h"
@@ -88,6 +89,7 @@ struct Dynamics::Parts {
   std::optional<ExplicitSteps> explicit_steps;
   Fragments fragments;
   Grains grains;
+  LightParticles light;
 
   bool is_rescue = false;  // explicit steps have failed: this frame is made of steps of implicit Euler
   bool asleep = false;  // all steps of the last frame were slept through

@@ -10,13 +10,9 @@ namespace {
 /// overshot.
 constexpr double kEnergyGrowth = 1.2;
 
-/// One that leaves so much of the forces gets as many iterations again, and is then made anew with the cautious scheme,
-/// which does not go beyond its stage.
+/// One that leaves so much of the forces gets as many iterations again, and then counts as bad: a body that is turned
+/// inside out, say, or a piece that spins faster than the scheme can follow, whose unbalanced steps would blow it up.
 constexpr double kUnbalanced = 0.3;
-
-/// One that leaves as much as this has gone wrong: a body that is turned inside out, say. Less is no reason for implicit
-/// Euler, which takes a fifth of a soft beam's swing away.
-constexpr double kLost = 0.95;
 
 }  // namespace
 
@@ -38,8 +34,9 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
     std::fill(velocity.begin(), velocity.end(), Vector4());
     std::fill(acceleration.begin(), acceleration.end(), Vector4());
   } else {
+    light.Follow(position, velocity, acceleration);
     grains.Restore(tissue, time_step, position, velocity, acceleration);
-    if (grains.count() > 0) elastic_force_is = ElasticForceIs::kOfAnotherState;
+    if (grains.count() + light.count() > 0) elastic_force_is = ElasticForceIs::kOfAnotherState;
   }
   return true;
 }
@@ -48,7 +45,7 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
   const bool is_second_order = choice.integrator == Integrator::kGeneralizedAlpha;
   const double growth = is_second_order ? EnergyAtStart(tissue) : 0;
   NewtonSolver::Verdict verdict = Attempt(tissue, scheme, is_second_order ? 2 : 1, result);
-  if (is_second_order && (result.relative_residual > kUnbalanced || IsBad(tissue, verdict, result.relative_residual, growth))) {
+  if (is_second_order && IsBad(tissue, verdict, result.relative_residual, growth)) {
     // The end of a generalised-alpha step lies beyond the stage that was solved for. After violence that is no place to
     // go.
     verdict = Attempt(tissue, TimeScheme(choice.integrator, scheme.time_step_s(), true), 1, result);
@@ -64,7 +61,7 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
 }
 
 bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth) {
-  if (verdict == NewtonSolver::Verdict::kFailed || residual > kLost) return true;
+  if (verdict == NewtonSolver::Verdict::kFailed || residual > kUnbalanced) return true;
   if (IsMoving()) return false;  // who moves held particles puts energy in
   const double stored = viscous ? viscous->StoredEnergyAt(end_position) : 0;
   return !(stored + EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) +

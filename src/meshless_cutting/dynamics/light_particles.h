@@ -1,0 +1,45 @@
+// Particles that carry next to no mass, kept from flying about.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "dynamics/field.h"
+#include "tissue/tissue.h"
+
+namespace meshless_cutting {
+
+/// Where a cut leaves a flake in the corner of a cell, the particles on the far side of that cell hold a ten-thousandth
+/// of the mass of others, and the forces that place them are as small: they drown in the residual at which a solver stops
+/// (the small cut cells of unfitted methods; Burman 2010, Ghost penalty). What is left of their place is noise; divided by
+/// the time step it makes velocities of metres per second, which carry them farther off in the next step, until a flake is
+/// stretched beyond what Newton's method finds back from. So they keep no velocity of their own: after each step they take
+/// that of the affine motion of the next larger point, and stay within kReach cells of the place where it would have them.
+class LightParticles {
+ public:
+  /// Share of the mass of a particle amid full cells below which a particle is light.
+  static constexpr double kShare = 0.01;
+  static constexpr double kReach = 0.5;
+
+  /// Finds them and their anchors. Allocates only to grow.
+  void Build(const Tissue& tissue, double cell_m);
+
+  /// After a step. Changes momentum by what light particles carry, nothing else.
+  void Follow(Field& position, Field& velocity, Field& acceleration) const;
+
+  int count() const { return static_cast<int>(particles_.size()); }
+
+ private:
+  /// The particle that `weights` of the anchor's particles extrapolate to: exact for affine motions.
+  void AddWeights(const Tissue& tissue, int particle, int anchor);
+
+  int support_ = 8;
+  double reach_ = 0;                // m
+  std::vector<int> particles_;      // heavy ones first: what a light one follows has settled before
+  std::vector<int> anchors_;        // K particles each
+  std::vector<double> weights_;     // K each
+  std::vector<std::pair<double, int>> by_mass_;            // scratch
+  std::vector<int> point_begin_, points_, light_of_;       // scratch: the points of each particle
+};
+
+}  // namespace meshless_cutting
