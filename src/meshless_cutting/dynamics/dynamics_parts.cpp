@@ -100,6 +100,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
     // A particle without mass is one that all its points have left for a twin.
     potential.free[j] = !tissue.particle_fixed[j] && tissue.particle_mass[j] > 0 ? 1 : 0;
   }
+  WeighFragments(tissue);
   double volume = 0;
   for (double v : tissue.point_volume) volume += v;
   newton.TissueChanged(tissue);
@@ -113,11 +114,25 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
   WeighLoad(tissue);
 }
 
+void Dynamics::Parts::WeighFragments(const Tissue& tissue) {
+  // Each piece is a problem of its own. Measured by the forces in the largest, the residual of a small one would always
+  // be small, and its motion whatever the solver happened to leave.
+  std::vector<double>& mass = fragment_mass;
+  mass.assign(fragments.count(), 0);
+  for (int j = 0; j < particles; ++j) mass[fragments.of_particle[j]] += tissue.particle_mass[j];
+  const double largest = *std::max_element(mass.begin(), mass.end());
+  for (int j = 0; j < particles; ++j) {
+    const int f = fragments.of_particle[j];
+    const bool counts = mass[f] > 0 && !grains.IsGrain(f);
+    potential.weight[j] = counts ? std::pow(largest / mass[f], 2) : 1;
+  }
+}
+
 void Dynamics::Parts::WeighLoad(const Tissue& tissue) {
   const double gravity = config.gravity_m_s2 ? config.gravity_m_s2->norm() : 0;
   double weight = 0, volume = 0;
   for (int j = 0; j < particles; ++j) {
-    if (potential.free[j]) weight += std::pow(gravity * tissue.particle_mass[j], 2);
+    if (potential.free[j]) weight += potential.weight[j] * std::pow(gravity * tissue.particle_mass[j], 2);
   }
   for (double v : tissue.point_volume) volume += v;
   load = std::sqrt(weight) + kForceRounding * points.lame().mu * std::pow(volume, 2.0 / 3) + forces;

@@ -29,6 +29,7 @@ struct Dynamics::Parts {
   // dynamics_parts.cpp
   void TissueChanged(const Tissue& tissue);
   void WeighLoad(const Tissue& tissue);
+  void WeighFragments(const Tissue& tissue);
 
   // dynamics_sleep.cpp
   /// Whether held particles move in this frame.
@@ -95,6 +96,7 @@ struct Dynamics::Parts {
   bool asleep = false;  // all steps of the last frame were slept through
   AdvanceResult sleeping_result;
   int particles = 0;
+  std::vector<double> fragment_mass;  // kg, scratch
   bool skin_changed = true;
   bool first_step = true;
   double load = 0;          // N, what residuals are measured against besides the forces inside

@@ -26,8 +26,8 @@ MESHLESS_CUTTING_CLONES double GatherProduct(const ParticleRange& range, const S
 }
 
 MESHLESS_CUTTING_CLONES GradientSums GatherGradient(const ParticleRange& range, const SlotSums& sums,
-                                                    const double* free, const double* inertia, const Vector4* y,
-                                                    const Vector4* target, Vector4* gradient) {
+                                                    const double* free, const double* inertia, const double* weight,
+                                                    const Vector4* y, const Vector4* target, Vector4* gradient) {
   Vector4 inertia_sum, residual, terms;
   for (int j = range.begin; j < range.end; ++j) {
     Vector4 sum;
@@ -36,8 +36,8 @@ MESHLESS_CUTTING_CLONES GradientSums GatherGradient(const ParticleRange& range, 
     const Vector4 pull = (free[j] * inertia[j]) * way, total = term + pull;
     gradient[j] = total;
     inertia_sum += Multiply(pull, way);
-    residual += Multiply(total, total);
-    terms += Multiply(term, term);
+    residual += weight[j] * Multiply(total, total);
+    terms += weight[j] * Multiply(term, term);
   }
   return {Sum(inertia_sum), Sum(residual), Sum(terms)};
 }
@@ -53,13 +53,14 @@ MESHLESS_CUTTING_CLONES double MaskAndDot(const ParticleRange& range, const doub
 }
 
 MESHLESS_CUTTING_CLONES double AdvanceSolution(const ParticleRange& range, double alpha, const Vector4* direction,
-                                               const Vector4* product, Vector4* step, Vector4* residual) {
+                                               const Vector4* product, const double* weight, Vector4* step,
+                                               Vector4* residual) {
   Vector4 sum;
   for (int j = range.begin; j < range.end; ++j) {
     step[j] += alpha * direction[j];
     const Vector4 r = residual[j] - alpha * product[j];
     residual[j] = r;
-    sum += Multiply(r, r);
+    sum += weight[j] * Multiply(r, r);
   }
   return Sum(sum);
 }

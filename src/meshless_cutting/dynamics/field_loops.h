@@ -34,17 +34,17 @@ double GatherProduct(const ParticleRange& range, const SlotSums& sums, double fa
 /// gradient[j] (in: of all other terms) += sum of its slots + inertia[j] (y[j] - target[j]), zero where not free.
 struct GradientSums {
   double inertia = 0;              // sum of inertia |y - target|^2, J
-  double residual = 0, terms = 0;  // sums of |gradient|^2 with and without inertia, N^2
+  double residual = 0, terms = 0;  // weighted sums of |gradient|^2 with and without inertia, N^2
 };
 GradientSums GatherGradient(const ParticleRange& range, const SlotSums& sums, const double* free, const double* inertia,
-                            const Vector4* y, const Vector4* target, Vector4* gradient);
+                            const double* weight, const Vector4* y, const Vector4* target, Vector4* gradient);
 
 /// q[j] *= mask[j]; returns the sum of p[j] . q[j].
 double MaskAndDot(const ParticleRange& range, const double* mask, const Vector4* p, Vector4* q);
 
-/// step += alpha direction, residual -= alpha product; returns the sum of |residual|^2.
+/// step += alpha direction, residual -= alpha product; returns the weighted sum of |residual|^2.
 double AdvanceSolution(const ParticleRange& range, double alpha, const Vector4* direction, const Vector4* product,
-                       Vector4* step, Vector4* residual);
+                       const double* weight, Vector4* step, Vector4* residual);
 
 /// direction = scaled + beta direction.
 void NextDirection(const ParticleRange& range, double beta, const Vector4* scaled, Vector4* direction);

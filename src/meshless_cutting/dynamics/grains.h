@@ -26,6 +26,7 @@ class Grains {
   void Restore(const Tissue& tissue, double time_step, Field& position, Field& velocity, Field& acceleration) const;
 
   int count() const { return static_cast<int>(end_.size()); }
+  bool IsGrain(int fragment) const { return place_[fragment] >= 0; }
 
  private:
   std::vector<int> particles_;  // of all grains, grain after grain

@@ -19,6 +19,7 @@ double SumOf(const std::vector<double>& values) {
 void IncrementalPotential::Resize(int particles) {
   inertia.resize(particles);
   free.resize(particles);
+  weight.resize(particles);
   target.resize(particles);
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
   gradient_sums_.resize(chunk_sums_.size());
@@ -31,7 +32,7 @@ double IncrementalPotential::Evaluate(const Field& y, Field& gradient, Norms& no
   energy += elastic_.EvaluateInSlots(y);
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
     gradient_sums_[c] = GatherGradient(ParticleRange(c, size()), elastic_.slot_sums(), free.data(), inertia.data(),
-                                       y.data(), target.data(), gradient.data());
+                                       weight.data(), y.data(), target.data(), gradient.data());
   });
   GradientSums sum;
   for (const GradientSums& s : gradient_sums_) {

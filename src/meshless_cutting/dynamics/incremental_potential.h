@@ -22,9 +22,10 @@ class IncrementalPotential {
 
   std::vector<double> inertia;  // kg/s^2 per particle
   std::vector<double> free;     // 1: moves, 0: does not
+  std::vector<double> weight;   // in the squares of residuals: a small piece of the object counts as much as a large one
   Field target;                 // m
 
-  /// Norms of the gradient and of the forces' share in it (all but inertia), over the free particles; N.
+  /// Weighted norms of the gradient and of the forces' share in it (all but inertia), over the free particles; N.
   struct Norms {
     double residual = 0, terms = 0;
   };

@@ -100,7 +100,8 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
     }
     const double alpha = rz / curvature;
     const double rr = SumOver([&](const ParticleRange& range) {
-      return AdvanceSolution(range, alpha, direction_.data(), product_.data(), step_.data(), residual_.data());
+      return AdvanceSolution(range, alpha, direction_.data(), product_.data(), potential_.weight.data(), step_.data(),
+                             residual_.data());
     });
     reached = rr;
     if (rr <= stop) break;
