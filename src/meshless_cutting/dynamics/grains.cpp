@@ -6,9 +6,6 @@
 namespace meshless_cutting {
 namespace {
 
-/// Volume of full cells below which a free piece is a grain.
-constexpr double kCells = 4;
-
 /// Of all rotations the one nearest to A; of a mirrored A, too.
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& A) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -30,7 +27,7 @@ void Grains::Build(const Tissue& tissue, const Fragments& fragments) {
   const auto moves = [&](int j) { return tissue.particle_mass[j] > 0 && !tissue.particle_fixed[j]; };
   place_.assign(fragments.count(), -1);
   for (int f = 0; f < fragments.count(); ++f) {
-    if (!fragments.held[f] && volume_[f] > 0 && volume_[f] < kCells * cell) place_[f] = 0;
+    if (!fragments.held[f] && volume_[f] > 0 && volume_[f] < cell) place_[f] = 0;
   }
   for (int j = 0; j < tissue.particle_count(); ++j) {
     int& place = place_[fragments.of_particle[j]];

@@ -1,4 +1,4 @@
-// Free pieces of the size of a few cells of the background grid, kept from shaking.
+// Free pieces smaller than a cell of the background grid, kept from shaking.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace meshless_cutting {
 
-/// A grain is made of integration points or of shares of some in a dozen cut cells: how it deforms is not resolved, its
-/// elastic waves pass it many times a step, and one that turns by about a radian a step is where second order schemes gain
-/// energy without bound, and Newton's iterations never end. Grains are rigid: after each step they get their shape at rest back, where it
+/// A grain has no more than an integration point or two: how it deforms is not resolved, its elastic waves pass it many
+/// times a step, and one that turns by about a radian a step is where second order schemes gain energy without bound,
+/// and Newton's iterations never end. Grains are rigid: after each step they get their shape at rest back, where it
 /// fits best (Mueller et al. 2005, Meshless deformations based on shape matching), keep their momentum, and turn by
 /// kMostTurn a step at most.
 class Grains {

@@ -1,0 +1,16 @@
+// A share of session_search, and the seeds that it found failures with.
+#include <gtest/gtest.h>
+
+#include "scenes/session_search.h"
+
+namespace meshless_cutting {
+namespace {
+
+TEST(RandomSessions, MotionStaysPhysical) {
+  SessionCounts counts;
+  for (std::uint64_t seed : {1, 2, 3, 4}) EXPECT_EQ(SearchSession(seed, 300, counts), "") << "seed " << seed;
+  EXPECT_GT(counts.most_fragments, 3);
+}
+
+}  // namespace
+}  // namespace meshless_cutting

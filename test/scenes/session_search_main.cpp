@@ -1,0 +1,29 @@
+// session_search [--sessions N] [--frames F] [--seed S]: random sessions, each frame checked (see session_search.h). The
+// seeds of those that fail are printed; they belong into random_sessions_test.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "scenes/session_search.h"
+
+int main(int argc, char** argv) {
+  long sessions = 100, frames = 480;
+  std::uint64_t seed = 1;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::strcmp(argv[i], "--sessions") == 0) sessions = std::atol(argv[i + 1]);
+    if (std::strcmp(argv[i], "--frames") == 0) frames = std::atol(argv[i + 1]);
+    if (std::strcmp(argv[i], "--seed") == 0) seed = std::strtoull(argv[i + 1], nullptr, 10);
+  }
+  meshless_cutting::SessionCounts counts;
+  long failures = 0;
+  for (long n = 0; n < sessions; ++n) {
+    const std::string error = meshless_cutting::SearchSession(seed + n, static_cast<int>(frames), counts);
+    if (error.empty()) continue;
+    ++failures;
+    std::printf("FAILED seed %llu: %s\n", static_cast<unsigned long long>(seed + n), error.c_str());
+    std::fflush(stdout);
+  }
+  std::printf("%ld sessions, %ld frames, %ld strokes, up to %ld fragments, %ld hard frames, %ld failures\n", counts.sessions,
+              counts.frames, counts.strokes, counts.most_fragments, counts.hard_frames, failures);
+  return failures == 0 ? 0 : 1;
+}
