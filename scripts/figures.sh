@@ -5,15 +5,17 @@
 set -euo pipefail
 SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 
-# name | simulated time of the picture, s | focal point, m | distance, m | pitch, rad | yaw, rad | height of the grid, m | what is shown
+# name, after @ the moment where a figure has several | simulated time of the picture, s | focal point, m | distance, m | pitch, rad | yaw, rad | height of the grid, m | what is shown
 VIEWS="
 situation_1|0.42|{X: 0.035, Y: 0.01, Z: -0.535}|0.25|0.22|5.0|-0.6|object
 situation_2|0.333|{X: 0.06, Y: 0.01, Z: -0.465}|0.24|0.20|4.9|-0.6|object
 situation_3|0.30|{X: 0.025, Y: 0.01, Z: -0.08}|0.20|0.35|5.0|-0.12|fragments
 fig7_falling_cylinder|0.30|{X: 0, Y: 0, Z: -0.09}|0.32|0.30|5.9|-0.16|fragments
 fig8_rising_edge|0.30|{X: 0, Y: 0, Z: 0.005}|0.22|0.30|5.9|-0.06|fragments
-fig9_twisting_blade|1.05|{X: 0.05, Y: 0.02, Z: 0.015}|0.20|0.45|3.9|0|object
+fig9_twisting_blade|1.05|{X: 0.05, Y: 0.02, Z: 0.015}|0.20|0.55|4.9|0|object
+fig10_brain@start|1.5|{X: -0.005, Y: 0.0, Z: 0.0}|0.33|0.75|0.75|-0.037|object
 fig10_brain|3.0|{X: -0.005, Y: 0.0, Z: 0.0}|0.33|0.75|0.75|-0.037|object
+fig10_brain@end|5.0|{X: -0.005, Y: 0.0, Z: 0.0}|0.33|0.75|0.75|-0.037|object
 fig11_liver|5.6|{X: 0.0, Y: 0.0, Z: -0.03}|0.31|0.6|5.0|-0.1|object
 fig12_mapping|1.1|{X: 0.055, Y: 0.01, Z: -0.03}|0.20|0.30|5.0|-0.1|mapping
 "
@@ -74,7 +76,7 @@ PYTHON
 
 picture() {
   local name="$1" seconds="$2" focus="$3" distance="$4" pitch="$5" yaw="$6" grid="$7" kind="$8"
-  local out="$SOURCE_DIR/docs/figures/$name.png" port=$((20000 + RANDOM % 10000)) display=":$((90 + RANDOM % 100))"
+  local figure="${name%@*}" out="$SOURCE_DIR/docs/figures/${name/@/_}.png" port=$((20000 + RANDOM % 10000)) display=":$((90 + RANDOM % 100))"
   rm -f "$work"/go*
   # The shipped displays, seen from elsewhere; the panels are cropped. The lines of the mapping lie inside: without the skin.
   local displays="$SOURCE_DIR/launch/demo.rviz"
@@ -92,7 +94,7 @@ picture() {
   start roscore -p "$port"
   until rosparam set /use_sim_time true 2>/dev/null; do sleep 0.5; done
   start python3 "$work/clock.py" "$seconds" "$work/go"
-  start roslaunch -p "$port" meshless_cutting figure.launch "figure:=$name" player:=false rviz:=false
+  start roslaunch -p "$port" meshless_cutting figure.launch "figure:=$figure" player:=false rviz:=false
   start rviz -d "$work/view.rviz"
   for _ in $(seq 120); do
     rostopic list 2>/dev/null | grep -q '^/simulator/surface/positions' && xwininfo -root -tree 2>/dev/null | grep -q 'RViz' && break
@@ -100,7 +102,7 @@ picture() {
   done
   sleep 6
   # The path begins when its player does, while the clock stands.
-  local strokes="$SOURCE_DIR/launch/scenes/${name}_strokes.yaml"
+  local strokes="$SOURCE_DIR/launch/scenes/${figure}_strokes.yaml"
   if [ -e "$strokes" ]; then
     start rosrun meshless_cutting tool_player "_path:=$strokes" _topic:=/simulator/blade/measured_cp _rate:=500
     sleep 3
@@ -122,6 +124,6 @@ picture() {
 
 while IFS='|' read -r name seconds focus distance pitch yaw grid kind <&3; do
   [ -n "$name" ] || continue
-  if [ $# -gt 0 ] && [[ " $* " != *" $name "* ]]; then continue; fi
+  if [ $# -gt 0 ] && [[ " $* " != *" ${name%@*} "* ]]; then continue; fi
   picture "$name" "$seconds" "$focus" "$distance" "$pitch" "$yaw" "$grid" "$kind"
 done 3<<<"$VIEWS"

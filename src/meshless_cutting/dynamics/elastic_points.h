@@ -46,6 +46,7 @@ class ElasticPoints {
   void AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix);
 
   const PointGroups& groups() const { return groups_; }
+  ThreadPool& pool() { return pool_; }
   /// Of the stiffest material.
   const LameConstants& lame() const { return stiffest_; }
 

@@ -10,6 +10,9 @@ namespace {
 /// Particles that two points share when material goes on from one to the other across a face of the grid.
 constexpr int kFace = 4;
 
+/// Determinant over cubed trace of their spread, 1/27 for a cube, below which particles lie in a plane.
+constexpr double kFlat = 1e-8;
+
 }  // namespace
 
 void LightParticles::Build(const Tissue& tissue, double cell_m) {
@@ -34,6 +37,7 @@ void LightParticles::Build(const Tissue& tissue, double cell_m) {
   for (int j : tissue.point_particles) ++point_begin_[j];
   for (int j = 1; j <= tissue.particle_count(); ++j) point_begin_[j] += point_begin_[j - 1];
   points_.resize(tissue.point_particles.size());
+  shared_.assign(tissue.point_count(), 0);
   for (int p = tissue.point_count() - 1; p >= 0; --p) {
     for (std::size_t k = 0; k < K; ++k) points_[--point_begin_[tissue.point_particles[p * K + k]]] = p;
   }
@@ -46,16 +50,18 @@ void LightParticles::Build(const Tissue& tissue, double cell_m) {
     // The largest point that shares a face with that one and does not hold j: material behind the flake.
     const int* support = &tissue.point_particles[own * K];
     int anchor = -1;
-    for (std::size_t k = 0; k < K; ++k) {
-      for (int i = point_begin_[support[k]]; i < point_begin_[support[k] + 1]; ++i) {
-        const int p = points_[i];
-        if (tissue.point_volume[p] <= tissue.point_volume[anchor < 0 ? own : anchor]) continue;
-        const int* other = &tissue.point_particles[p * K];
-        int shared = 0;
-        for (std::size_t a = 0; a < K; ++a) shared += std::find(other, other + K, support[a]) != other + K;
-        if (shared >= kFace && std::find(other, other + K, j) == other + K) anchor = p;
+    const auto for_each_neighbour = [&](auto&& visit) {
+      for (std::size_t k = 0; k < K; ++k) {
+        for (int i = point_begin_[support[k]]; i < point_begin_[support[k] + 1]; ++i) visit(points_[i]);
       }
-    }
+    };
+    for_each_neighbour([&](int p) { ++shared_[p]; });
+    for (int i = point_begin_[j]; i < point_begin_[j + 1]; ++i) shared_[points_[i]] = 0;
+    for_each_neighbour([&](int p) {
+      const double volume = tissue.point_volume[p], most_so_far = tissue.point_volume[anchor < 0 ? own : anchor];
+      if (shared_[p] >= kFace && (volume > most_so_far || (anchor >= 0 && volume == most_so_far && p < anchor))) anchor = p;
+    });
+    for_each_neighbour([&](int p) { shared_[p] = 0; });
     if (anchor >= 0) AddWeights(tissue, j, anchor);
   }
 }
@@ -69,9 +75,11 @@ void LightParticles::AddWeights(const Tissue& tissue, int particle, int anchor) 
     const Eigen::Vector3d d = tissue.particle_rest[support[k]] - mean;
     spread += d * d.transpose();
   }
-  const Eigen::LDLT<Eigen::Matrix3d> solver(spread);
-  if (!(solver.vectorD().minCoeff() > 1e-6 * spread.trace())) return;  // flat: says nothing about motion beyond itself
-  const Eigen::Vector3d way = solver.solve(tissue.particle_rest[particle] - mean);
+  Eigen::Matrix3d inverse;
+  bool is_spread_out = false;  // else flat: says nothing about motion beyond itself
+  spread.computeInverseWithCheck(inverse, is_spread_out, kFlat * std::pow(spread.trace(), 3));
+  if (!is_spread_out) return;
+  const Eigen::Vector3d way = inverse * (tissue.particle_rest[particle] - mean);
   particles_.push_back(particle);
   for (int k = 0; k < support_; ++k) {
     anchors_.push_back(support[k]);

@@ -38,8 +38,8 @@ class LightParticles {
   std::vector<int> particles_;      // heavy ones first: what a light one follows has settled before
   std::vector<int> anchors_;        // K particles each
   std::vector<double> weights_;     // K each
-  std::vector<std::pair<double, int>> by_mass_;            // scratch
-  std::vector<int> point_begin_, points_, light_of_;       // scratch: the points of each particle
+  std::vector<std::pair<double, int>> by_mass_;      // scratch
+  std::vector<int> point_begin_, points_, shared_;  // scratch: the points of each particle; per point, with another
 };
 
 }  // namespace meshless_cutting

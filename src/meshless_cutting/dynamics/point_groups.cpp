@@ -142,6 +142,12 @@ void PointGroups::SortNewPoints(const Tissue& tissue) {
   std::inplace_merge(order_.begin(), order_.begin() + known, order_.end(), earlier);
 }
 
+bool PointGroups::IsDescribed(const Tissue& tissue, int p) const {
+  const std::size_t K = tissue.support_size, first = p * K;
+  return first + K <= described_particles_.size() && described_rest_[p] == tissue.point_rest[p] &&
+         std::equal(&described_particles_[first], &described_particles_[first] + K, &tissue.point_particles[first]);
+}
+
 void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffness) {
   SortNewPoints(tissue);
   groups.resize(stiffness.size() * kSupportShapes);
@@ -150,7 +156,7 @@ void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffne
   supports_.resize(tissue.point_count());
   places.resize(tissue.point_count());
   for (int p = 0; p < tissue.point_count(); ++p) {
-    supports_[p] = DescribeSupport(tissue, p);
+    if (!IsDescribed(tissue, p)) supports_[p] = DescribeSupport(tissue, p);
     ++counts_[group_of(p)];
   }
   for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
@@ -169,6 +175,8 @@ void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffne
     places[p] = PlaceOf(g, groups[g].placed++, counts_[g]);
     Put(tissue, p, support, stabilisation, places[p], groups[g]);
   }
+  described_rest_ = tissue.point_rest;
+  described_particles_ = tissue.point_particles;
   for (PointGroup& group : groups) FillEmptyLanes(group);
   BuildSlots(tissue.particle_count());
 }

@@ -69,9 +69,13 @@ struct PointGroups {
 
  private:
   void SortNewPoints(const Tissue& tissue);
+  /// Whether supports_[p] is what DescribeSupport would say again: gradients follow from the centroid and the particles.
+  bool IsDescribed(const Tissue& tissue, int p) const;
   void BuildSlots(int particles);
 
-  std::vector<PointSupport> supports_;   // scratch
+  std::vector<PointSupport> supports_;   // of the points whose centroid and particles were:
+  std::vector<Eigen::Vector3d> described_rest_;
+  std::vector<int> described_particles_;
   std::vector<int> counts_;              // scratch, per group
   std::vector<int> order_;               // points along a space-filling curve
   std::vector<std::uint64_t> curve_;     // place of each point on it

@@ -1,13 +1,13 @@
 #include "dynamics/stiffness_damping_term.h"
 
-#include <algorithm>
+#include "dynamics/field_loops.h"
 
 namespace meshless_cutting {
 
 void StiffnessDampingTerm::TissueChanged(int particles) {
   points_.Resize(tangent_);
   way_.resize(particles);
-  force_.resize(particles);
+  chunk_energy_.resize(ChunkCount(particles, kParticlesPerChunk));
 }
 
 void StiffnessDampingTerm::BeginStep(const StageMotion& motion) {
@@ -18,15 +18,26 @@ void StiffnessDampingTerm::BeginStep(const StageMotion& motion) {
 }
 
 double StiffnessDampingTerm::Evaluate(const Field& y, Field& gradient) {
-  const std::size_t count = y.size();
-  std::fill(force_.begin(), force_.end(), Vector4());
-  for (std::size_t j = 0; j < count; ++j) way_[j] = y[j] - (*still_)[j];
-  points_.AddProduct(tangent_, beta_ * rate_, way_, force_);
+  const int count = static_cast<int>(y.size());
+  ThreadPool& pool = points_.pool();
+  pool.ForEach(static_cast<int>(chunk_energy_.size()), [&](int c) {
+    const ParticleRange range(c, count);
+    for (int j = range.begin; j < range.end; ++j) way_[j] = y[j] - (*still_)[j];
+  });
+  points_.ProductInSlots(tangent_, way_);
+  const SlotSums sums = points_.slot_sums();
+  pool.ForEach(static_cast<int>(chunk_energy_.size()), [&](int c) {
+    const ParticleRange range(c, count);
+    Vector4 force[kParticlesPerChunk];
+    GatherSlots(range, sums.buffer, sums.slot_begin, sums.slots, beta_ * rate_, force);
+    chunk_energy_[c] = 0;
+    for (int j = range.begin; j < range.end; ++j) {
+      chunk_energy_[c] += 0.5 * Dot(way_[j], force[j - range.begin]);
+      gradient[j] += force[j - range.begin];
+    }
+  });
   double energy = 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    energy += 0.5 * Dot(way_[j], force_[j]);
-    gradient[j] += force_[j];
-  }
+  for (double e : chunk_energy_) energy += e;
   return energy;
 }
 

@@ -34,7 +34,8 @@ class StiffnessDampingTerm : public ForceTerm {
   double rate_ = 0;
   const Field* still_ = nullptr;
   PointTangent tangent_;
-  Field way_, force_;
+  Field way_;
+  std::vector<double> chunk_energy_;
 };
 
 }  // namespace meshless_cutting
