@@ -18,7 +18,7 @@ namespace meshless_cutting {
 class LightParticles {
  public:
   /// Share of the mass of a particle amid full cells below which a particle is light.
-  static constexpr double kShare = 0.01;
+  static constexpr double kShare = 0.05;
   static constexpr double kReach = 0.5;
 
   /// Finds them and their anchors. Allocates only to grow.
