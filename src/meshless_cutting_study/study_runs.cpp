@@ -235,6 +235,7 @@ void StudyRuns::SolverError(const StudyCase& c, StudyRow& row) {
     size += std::pow(converged[n], 2);
   }
   row.error_solver = std::sqrt(difference / size);
+  row.note = std::to_string(kFrames) + " frames";
 }
 
 void StudyRuns::Swing(const StudyCase& c, StudyRow& row) const {
