@@ -51,9 +51,9 @@ TEST(BlockCholesky, TakesOutRowsWithoutPivot) {
   factor.Solve(x.data());
   EXPECT_EQ(x[1], 0);
   EXPECT_EQ(x[15], 0);
-  EXPECT_NEAR(x[0], 2, 1e-14);
-  EXPECT_NEAR(4 * x[3] + x[14], 8, 1e-14);
-  EXPECT_NEAR(x[3] + 4 * x[14], 8, 1e-14);
+  EXPECT_DOUBLE_EQ(x[0], 2);
+  EXPECT_DOUBLE_EQ(4 * x[3] + x[14], 8);
+  EXPECT_DOUBLE_EQ(x[3] + 4 * x[14], 8);
 }
 
 /// Two boxes side by side in one tissue, joined nowhere though their particles coincide: a cut through.

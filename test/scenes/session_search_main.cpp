@@ -9,10 +9,21 @@
 int main(int argc, char** argv) {
   long sessions = 100, frames = 480;
   std::uint64_t seed = 1;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::strcmp(argv[i], "--sessions") == 0) sessions = std::atol(argv[i + 1]);
-    if (std::strcmp(argv[i], "--frames") == 0) frames = std::atol(argv[i + 1]);
-    if (std::strcmp(argv[i], "--seed") == 0) seed = std::strtoull(argv[i + 1], nullptr, 10);
+  for (int i = 1; i < argc; i += 2) {
+    const char* value = i + 1 < argc ? argv[i + 1] : "";
+    char* end = nullptr;
+    const unsigned long long number = std::strtoull(value, &end, 10);
+    const bool is_number = end != value && *end == '\0' && *value != '-';
+    if (is_number && std::strcmp(argv[i], "--sessions") == 0) {
+      sessions = static_cast<long>(number);
+    } else if (is_number && std::strcmp(argv[i], "--frames") == 0) {
+      frames = static_cast<long>(number);
+    } else if (is_number && std::strcmp(argv[i], "--seed") == 0) {
+      seed = number;
+    } else {
+      std::fprintf(stderr, "%s %s: expected --sessions, --frames or --seed and a whole number\n", argv[i], value);
+      return 1;
+    }
   }
   meshless_cutting::SessionCounts counts;
   long failures = 0;

@@ -29,6 +29,7 @@ struct Dynamics::Parts {
   // dynamics_parts.cpp
   void TissueChanged(const Tissue& tissue);
   void WeighLoad(const Tissue& tissue);
+  /// How much each piece counts in residuals; before WeighLoad.
   void WeighFragments(const Tissue& tissue);
 
   // dynamics_sleep.cpp

@@ -30,7 +30,7 @@ class LightParticles {
   int count() const { return static_cast<int>(particles_.size()); }
 
  private:
-  /// The particle that `weights` of the anchor's particles extrapolate to: exact for affine motions.
+  /// Adds a particle, with the weights by which the affine fit to the anchor's particles says where it is.
   void AddWeights(const Tissue& tissue, int particle, int anchor);
 
   int support_ = 8;

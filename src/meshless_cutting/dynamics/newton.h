@@ -34,8 +34,8 @@ class NewtonSolver {
     double relative_residual = 0;
   };
 
-  /// Minimises from y, the place that was taken last. The residual is measured against the forces in the object: the norm of the terms' gradient plus
-  /// `load`, N, below which nothing is worth moving.
+  /// Minimises from y, the place that was taken last. The residual is measured against the forces in the object: the
+  /// norm of the terms' gradient plus `load`, N, below which nothing is worth moving.
   Result Minimise(Field& y, double load);
 
   /// Of the last evaluation, see Minimise.
