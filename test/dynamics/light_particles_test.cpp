@@ -6,11 +6,61 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "cut/soft_body.h"
 #include "dynamics/dynamics.h"
 #include "support/box_tissue.h"
+#include "support/shapes.h"
 
 namespace meshless_cutting {
 namespace {
+
+/// What Follow() makes of random motion.
+Field Followed(const LightParticles& light, int particles) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Field fields[3];
+  for (Field& field : fields) {
+    for (int j = 0; j < particles; ++j) field.push_back({uniform(random), uniform(random), uniform(random), 0});
+  }
+  light.Follow(fields[0], fields[1], fields[2]);
+  for (Field& field : fields) fields[0].insert(fields[0].end(), field.begin(), field.end());
+  return fields[0];
+}
+
+TEST(LightParticles, AreThoseOfTheWholeTissueAfterEachOfManyCuts) {
+  const Lattice lattice = FillWithLattice(BoxMesh({0, 0, 0}, {0.06, 0.05, 0.04}), 0.008).lattice;
+  ObjectConfig object;
+  object.material.density_kg_m3 = 1000;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int most = 0;
+  for (const double cell : {0.008, 0.01}) {
+    object.cell_size_m = cell;
+    SoftBody body(lattice, object, true);
+    LightParticles light;
+    light.Build(body.tissue(), cell);
+    for (int round = 0; round < 40; ++round) {
+      std::vector<LinkCut> cuts;
+      for (int l = 0; l < static_cast<int>(lattice.links.size()); ++l) {
+        if (!body.graph().IsCut(l) && uniform(random) < 0.01) cuts.push_back({l, uniform(random)});
+      }
+      if (cuts.empty()) continue;
+      body.CloseWindow();
+      body.Cut(cuts);
+      light.Build(body.tissue(), cell);
+      LightParticles anew;
+      anew.Build(body.tissue(), cell);
+      ASSERT_EQ(light.count(), anew.count()) << "round " << round;
+      const int particles = body.tissue().particle_count();
+      const Field a = Followed(light, particles), b = Followed(anew, particles);
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_EQ(a[i].vector(), b[i].vector()) << "round " << round << ", value " << i;
+      }
+      most = std::max(most, light.count());
+    }
+  }
+  EXPECT_GT(most, 10);
+}
 
 /// Two cells in a row; of the second a cut has left a ten-thousandth.
 Tissue CellWithFlake() {
@@ -80,8 +130,8 @@ void Append(const Tissue& piece, const Eigen::Vector3d& offset, Tissue& tissue) 
   for (const Eigen::Vector3d& g : piece.point_gradients) tissue.point_gradients.push_back(g);
 }
 
-/// Where the particles of the piece are after half a second in which it swings, clamped and under its own weight; beside
-/// a block of a hundred times its mass, or alone.
+/// Where the particles of the piece are after half a second in which it swings, clamped and under its own weight;
+/// beside a block of a hundred times its mass, or alone.
 std::vector<Eigen::Vector3d> SwingOfAPiece(bool beside_a_block) {
   BoxTissueConfig block, piece;
   block.cells = {12, 6, 6};

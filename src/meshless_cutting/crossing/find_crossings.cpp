@@ -1,7 +1,6 @@
 #include "crossing/find_crossings.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "crossing/edge_edge.h"
@@ -10,6 +9,8 @@ namespace meshless_cutting {
 namespace {
 
 constexpr std::uint8_t kBeyondAll = 63;
+/// Bounds of a block are renewed near the blade when they are wider than this share of the lattice size.
+constexpr double kTight = 0.1;
 /// Edges of the blade that share one more box.
 constexpr size_t kEdgesTogether = 5;
 
@@ -44,26 +45,17 @@ Box BoundParticles(const int* particles, int count, double overshoot, const Latt
   return box;
 }
 
-/// The code of what moves with the particles: from bounds of an earlier window where these, widened by what particles
-/// can have moved since, still lie beyond a side, else from new ones.
-template <typename Kept, typename Box>
-std::uint8_t CodeOf(Kept& kept, const int* particles, int count, double overshoot, std::uint32_t version,
-                    const Box& box, const LatticeMotion& object) {
-  auto encode = [&] {
-    const double margin = (1 + 2 * overshoot) * (object.travel() - kept.travel);
-    return Outcode(kept.bounds.min.array() - margin, kept.bounds.max.array() + margin, box);
-  };
-  if (kept.version == version) {
-    const std::uint8_t code = encode();
-    if (code != 0 || kept.travel == object.travel()) return code;
-  }
-  kept = {BoundParticles<Box>(particles, count, overshoot, object), object.travel(), version};
-  return encode();
+/// How far along an axis what follows particles can have moved since the object had travelled `travel`.
+double Margin(double travel, double overshoot, const LatticeMotion& object) {
+  return (1 + 2 * overshoot) * (object.travel() - travel);
 }
 
-/// Two things apart from the box matter for the links between them only where they lie on different sides of it. What
-/// lies in the box is near itself, and what lies apart is found from there.
-bool AreOnBothSides(std::uint8_t a, std::uint8_t b) { return a != 0 && b != 0 && (a & b) == 0; }
+/// The code of what was bounded in an earlier window.
+template <typename Kept, typename Box>
+std::uint8_t CodeOf(const Kept& kept, double overshoot, const Box& box, const LatticeMotion& object) {
+  const double margin = Margin(kept.travel, overshoot, object);
+  return Outcode(kept.bounds.min.array() - margin, kept.bounds.max.array() + margin, box);
+}
 
 /// (1 - t) x0 + t x1 gives x0 and x1 themselves at the ends, so windows meet in the same bits.
 Eigen::Vector3d At(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double t) { return (1 - t) * x0 + t * x1; }
@@ -71,36 +63,32 @@ Eigen::Vector3d At(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, double 
 }  // namespace
 
 CrossingFinder::CrossingFinder(const Lattice& lattice, const MaterialGraph& graph)
-    : lattice_(&lattice),
-      graph_(&graph),
-      vertex_code_(lattice.vertices.size()),
-      placed_(lattice.vertices.size()),
-      window_(lattice.vertices.size()) {
-  for (size_t v = 0; v < lattice.vertices.size(); ++v)
-    for (const int* l = lattice.vertex_links.begin(static_cast<int>(v));
-         l != lattice.vertex_links.end(static_cast<int>(v)); ++l)
-      far_end_.push_back(lattice.links[*l][lattice.links[*l][0] == static_cast<int>(v)]);
+    : lattice_(&lattice), graph_(&graph), placed_(lattice.vertices.size()) {
+  const auto& [a, b] = lattice.links[0];
+  tight_ = kTight * (lattice.vertices[a] - lattice.vertices[b]).norm();
+  for (size_t v = 0, l = 0; v <= lattice.vertices.size(); ++v) {
+    while (l < lattice.links.size() && static_cast<size_t>(lattice.links[l][0]) < v) ++l;
+    first_link_.push_back(static_cast<int>(l));
+  }
 }
 
 CrossingFinder::Bounds CrossingFinder::BoundBlade(const BladeMotion& blade) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const Bounds nothing = {Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
   auto add = [](Bounds& bounds, const Bounds& other) {
     bounds.min = bounds.min.cwiseMin(other.min);
     bounds.max = bounds.max.cwiseMax(other.max);
   };
-  Bounds all = nothing;
+  Bounds all;
   window_bounds_.clear();
   stretch_bounds_.clear();
   edge_bounds_.clear();
   for (const BladeWindow& window : blade) {
-    Bounds whole = nothing;
+    Bounds whole;
     for (size_t e = 0; e + 1 < window.points_t0.size(); ++e) {
       Bounds edge = {window.points_t0[e], window.points_t0[e]};
       for (const Eigen::Vector3d* p : {&window.points_t0[e + 1], &window.points_t1[e], &window.points_t1[e + 1]})
         add(edge, {*p, *p});
       edge_bounds_.push_back(edge);
-      if (e % kEdgesTogether == 0) stretch_bounds_.push_back(nothing);
+      if (e % kEdgesTogether == 0) stretch_bounds_.emplace_back();
       add(stretch_bounds_.back(), edge);
       add(whole, edge);
     }
@@ -112,89 +100,76 @@ CrossingFinder::Bounds CrossingFinder::BoundBlade(const BladeMotion& blade) {
 
 void CrossingFinder::FindNearGroups(const Bounds& box, const LatticeMotion& object) {
   const auto& groups = object.blocks().groups();
-  const auto& blocks = object.blocks().blocks();
   group_bounds_.resize(groups.size());
   group_code_.assign(groups.size(), kBeyondAll);
   group_near_.assign(groups.size(), 0);
   for (size_t g = 0; g < groups.size(); ++g) {
     const MotionGroup& group = groups[g];
     if (group.blocks.empty()) continue;
-    group_code_[g] = CodeOf(group_bounds_[g], group.particles.data(), static_cast<int>(group.particles.size()),
-                            group.overshoot, group.version, box, object);
-  }
-  for (int b : object.blocks().with_astray())
-    for (int v : blocks[b].astray) {
-      const Eigen::Vector3d x = object.At(v).start;
-      group_code_[blocks[b].group] &= Outcode(x, x, box);
+    KeptBounds& kept = group_bounds_[g];
+    std::uint8_t code = kept.version == group.version ? CodeOf(kept, group.overshoot, box, object) : 0;
+    if (code == 0) {
+      const Bounds bounds = BoundParticles<Bounds>(group.particles.data(), static_cast<int>(group.particles.size()),
+                                                   group.overshoot, object);
+      kept = {bounds, object.travel(), group.version};
+      code = Outcode(bounds.min, bounds.max, box);
     }
+    group_code_[g] = code;
+  }
+  for (int v : object.blocks().astray()) {
+    const Eigen::Vector3d x = object.At(v).start;
+    group_code_[object.blocks().blocks()[object.blocks().block_of(v)].group] &= Outcode(x, x, box);
+  }
   for (size_t g = 0; g < groups.size(); ++g) {
     if (group_code_[g] == 0) group_near_[g] = 1;
     for (int n : groups[g].later_neighbours)
-      if (AreOnBothSides(group_code_[g], group_code_[n])) group_near_[g] = group_near_[n] = 1;
-  }
-  near_groups_.clear();
-  for (size_t g = 0; g < groups.size(); ++g)
-    if (group_near_[g]) near_groups_.push_back(static_cast<int>(g));
-}
-
-void CrossingFinder::Encode(int b, const Bounds& box, const LatticeMotion& object) {
-  Block& block = blocks_[b];
-  block.coded = search_;
-  const MotionBlock& moving = object.blocks().blocks()[b];
-  const MotionGroup& group = object.blocks().groups()[moving.group];
-  block.code = group_code_[moving.group];
-  if (group_near_[moving.group]) {
-    block.code |= CodeOf(block.kept, object.block_particles(b), object.support_size(), moving.overshoot, group.version,
-                         box, object);
-  }
-  for (int v : moving.astray) {
-    const Eigen::Vector3d x = object.At(v).start;
-    block.code &= Outcode(x, x, box);
+      if ((group_code_[g] & group_code_[n]) == 0) group_near_[g] = group_near_[n] = 1;
   }
 }
 
-void CrossingFinder::FindNearBlocks(const Bounds& box, const LatticeMotion& object) {
-  const auto& blocks = object.blocks().blocks();
-  const auto& groups = object.blocks().groups();
-  blocks_.resize(blocks.size());
-  near_blocks_.clear();
-  auto code_of = [&](int b) {
-    if (blocks_[b].coded != search_) Encode(b, box, object);
-    return blocks_[b].code;
+/// Evaluates the window of a vertex, if that was not done yet, and gives it its code.
+const CrossingFinder::PlacedVertex& CrossingFinder::Place(int vertex, const Bounds& box, const LatticeMotion& object) {
+  PlacedVertex& placed = placed_[vertex];
+  if (std::exchange(placed.search, search_) != search_) {
+    const auto& [start, end] = placed.window = object.At(vertex);
+    placed.code = Outcode(start.cwiseMin(end), start.cwiseMax(end), box);
+  }
+  return placed;
+}
+
+/// Tests the links of a block, unless its bounds say that none can reach the box; brings these up to date if they are
+/// not tight.
+void CrossingFinder::SearchBlock(int b, const Bounds& box, const BladeMotion& blade, const LatticeMotion& object) {
+  const MotionBlock& block = object.blocks().blocks()[b];
+  KeptBounds& kept = block_bounds_[b];
+  const double overshoot = object.blocks().groups()[block.group].reach_overshoot;
+  const bool is_known = kept.version == block.version;
+  if (is_known && CodeOf(kept, overshoot, box, object) != 0) return;
+  for (int p : block.vertices) {
+    if (first_link_[p] == first_link_[p + 1]) continue;
+    const std::uint8_t code = Place(p, box, object).code;
+    for (int link = first_link_[p]; link < first_link_[p + 1]; ++link)
+      if ((code & Place(lattice_->links[link][1], box, object).code) == 0 && !graph_->IsCut(link))
+        TestLink(link, blade);
+  }
+  if (is_known && Margin(kept.travel, overshoot, object) < tight_) return;
+  Bounds bounds;
+  auto add = [&](int vertex) {
+    const auto& [start, end] = placed_[vertex].window;
+    bounds.min = bounds.min.cwiseMin(start.cwiseMin(end));
+    bounds.max = bounds.max.cwiseMax(start.cwiseMax(end));
   };
-  for (int g : near_groups_)
-    for (int b : groups[g].blocks) {
-      const std::uint8_t code = code_of(b);
-      const auto& neighbours = blocks[b].neighbours;
-      if (code != 0 &&
-          std::none_of(neighbours.begin(), neighbours.end(), [&](int n) { return AreOnBothSides(code, code_of(n)); }))
-        continue;
-      blocks_[b].near = search_;
-      near_blocks_.push_back(b);
-    }
-  // A vertex has the code of its block until it is placed.
-  auto spread = [&](int b) {
-    if (std::exchange(blocks_[b].spread, search_) == search_) return;
-    const std::uint8_t code = code_of(b);
-    for (int v : blocks[b].vertices) vertex_code_[v] = code;
-  };
-  for (int b : near_blocks_) {
-    spread(b);
-    for (int n : blocks[b].neighbours) spread(n);
+  for (int p : block.vertices) {
+    if (first_link_[p] == first_link_[p + 1]) continue;
+    add(p);
+    for (int link = first_link_[p]; link < first_link_[p + 1]; ++link) add(lattice_->links[link][1]);
   }
-}
-
-/// Evaluates the window of a vertex, if that was not done yet, and gives it its own code.
-std::uint8_t CrossingFinder::Place(int vertex, const Bounds& box, const LatticeMotion& object) {
-  if (std::exchange(placed_[vertex], search_) != search_) {
-    const auto& [start, end] = window_[vertex] = object.At(vertex);
-    vertex_code_[vertex] = Outcode(start.cwiseMin(end), start.cwiseMax(end), box);
-  }
-  return vertex_code_[vertex];
+  kept = {bounds, object.travel(), block.version};
 }
 
 void CrossingFinder::TestLink(int link, const BladeMotion& blade) {
-  const LatticeMotion::Window &a = window_[lattice_->links[link][0]], &b = window_[lattice_->links[link][1]];
+  const LatticeMotion::Window &a = placed_[lattice_->links[link][0]].window,
+                              &b = placed_[lattice_->links[link][1]].window;
   const Eigen::Vector3d low = a.start.cwiseMin(a.end).cwiseMin(b.start).cwiseMin(b.end);
   const Eigen::Vector3d high = a.start.cwiseMax(a.end).cwiseMax(b.start).cwiseMax(b.end);
   const Bounds *edge_bounds = edge_bounds_.data(), *stretch_bounds = stretch_bounds_.data();
@@ -245,21 +220,11 @@ const std::vector<Crossing>& CrossingFinder::Find(const BladeMotion& blade, cons
   box.min.array() -= slack;
   box.max.array() += slack;
   FindNearGroups(box, object);
-  FindNearBlocks(box, object);
-  const MotionBlocks& blocks = object.blocks();
-  for (int block : near_blocks_)
-    for (int a : blocks.blocks()[block].vertices) {
-      std::uint8_t code = vertex_code_[a];
-      for (int i = lattice_->vertex_links.offsets[a]; i < lattice_->vertex_links.offsets[a + 1]; ++i) {
-        const int b = far_end_[i];
-        if ((code & vertex_code_[b]) != 0) continue;
-        if (b < a && blocks_[blocks.block_of(b)].near == search_) continue;  // its turn comes from the other end
-        const int link = lattice_->vertex_links.items[i];
-        if (graph_->IsCut(link)) continue;
-        code = Place(a, box, object);
-        if ((code & vertex_code_[b]) == 0 && (code & Place(b, box, object)) == 0) TestLink(link, blade);
-      }
-    }
+  const auto& groups = object.blocks().groups();
+  block_bounds_.resize(object.blocks().blocks().size());
+  for (size_t g = 0; g < groups.size(); ++g)
+    if (group_near_[g])
+      for (int b : groups[g].blocks) SearchBlock(b, box, blade, object);
   std::sort(found_.begin(), found_.end(), [](const Crossing& p, const Crossing& q) { return p.cut.link < q.cut.link; });
   return found_;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "crossing/lattice_motion.h"
@@ -18,11 +19,11 @@ struct Crossing {
   Eigen::Vector3d point;  // scene frame, m
 };
 
-/// Searches uncut links near the blade, from the coarse to the fine: groups of blocks, blocks of vertices, vertices,
-/// links. Each gets an outcode, six bits that say beyond which sides of the blade's box all of it stays during the
-/// window; what joins two of them can reach the box only where their codes have no bit in common. Bounds of groups and
-/// blocks serve for many windows, widened by what particles can have moved since; a vertex has the code of its block
-/// until one of its links may reach the box. Buffers are kept between frames.
+/// Searches uncut links near the blade, from the coarse to the fine: groups of blocks, blocks of vertices with their
+/// links, links. Each gets an outcode, six bits that say beyond which sides of the blade's box all of it stays during
+/// the window; a link between two groups or two vertices can reach the box only where their codes have no bit in
+/// common. Bounds of groups and blocks serve for many windows, widened by what particles can have moved since. Buffers
+/// are kept between frames.
 class CrossingFinder {
  public:
   CrossingFinder(const Lattice& lattice, const MaterialGraph& graph);
@@ -33,39 +34,35 @@ class CrossingFinder {
 
  private:
   struct Bounds {
-    Eigen::Vector3d min, max;
+    Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), max = -min;
   };
   /// Bounds of what follows some particles, as they were in a window.
   struct KeptBounds {
     Bounds bounds;
     double travel = 0;          // of the object in that window
-    std::uint32_t version = 0;  // of the group, whose particles they are
+    std::uint32_t version = 0;  // of the group or block
   };
-  struct Block {
-    KeptBounds kept;
-    std::uint32_t coded = 0, spread = 0, near = 0;  // last search in which that was done, and that it was near
+  struct PlacedVertex {
+    LatticeMotion::Window window;
+    std::uint32_t search = 0;  // the last in which it was evaluated
     std::uint8_t code = 0;
   };
   Bounds BoundBlade(const BladeMotion& blade);
   void FindNearGroups(const Bounds& box, const LatticeMotion& object);
-  void FindNearBlocks(const Bounds& box, const LatticeMotion& object);
-  void Encode(int block, const Bounds& box, const LatticeMotion& object);
-  std::uint8_t Place(int vertex, const Bounds& box, const LatticeMotion& object);
+  void SearchBlock(int block, const Bounds& box, const BladeMotion& blade, const LatticeMotion& object);
+  const PlacedVertex& Place(int vertex, const Bounds& box, const LatticeMotion& object);
   void TestLink(int link, const BladeMotion& blade);
 
   const Lattice* lattice_;
   const MaterialGraph* graph_;
+  double tight_;  // m
   std::vector<Crossing> found_;
   // Of the blade, in order: each window, stretches of edges in each window, each edge in each window.
   std::vector<Bounds> window_bounds_, stretch_bounds_, edge_bounds_;
-  std::vector<KeptBounds> group_bounds_;
+  std::vector<KeptBounds> group_bounds_, block_bounds_;
   std::vector<std::uint8_t> group_code_, group_near_;
-  std::vector<int> near_groups_, near_blocks_;
-  std::vector<Block> blocks_;
-  std::vector<int> far_end_;               // per item of lattice.vertex_links: the other vertex of the link
-  std::vector<std::uint8_t> vertex_code_;  // of near blocks and their neighbours
-  std::vector<std::uint32_t> placed_;      // per vertex: last search in which its window was evaluated
-  std::vector<LatticeMotion::Window> window_;
+  std::vector<int> first_link_;  // per vertex, one past the last included: links that start there
+  std::vector<PlacedVertex> placed_;
   std::uint32_t search_ = 0;
 };
 

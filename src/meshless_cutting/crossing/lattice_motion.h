@@ -45,12 +45,7 @@ class LatticeMotion {
   Window At(int vertex) const;
 
   const MotionBlocks& blocks() const { return blocks_; }
-  /// Particles that bound the vertices of a block at both ends of the window, but for its overshoot, its astray
-  /// vertices, and slack().
-  const int* block_particles(int block) const {
-    return &tissue_->point_particles[static_cast<size_t>(block) * tissue_->support_size];
-  }
-  int support_size() const { return tissue_->support_size; }
+  /// How far vertices can be outside the bounds of their particles beside their overshoot.
   double slack() const { return 4 * offset_size_; }  // m
   /// Upper bound of the way that any particle has moved along any axis, summed over all windows, this one included, m.
   double travel() const { return travel_; }

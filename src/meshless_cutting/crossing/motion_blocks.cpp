@@ -42,7 +42,6 @@ void MotionBlocks::Assign(int vertex, int block, int cell, double overshoot) {
     groups_[to.group].blocks.push_back(block);
     outdated_.push_back(to.group);
   }
-  to.overshoot = std::max(to.overshoot, overshoot);
   groups_[to.group].overshoot = std::max(groups_[to.group].overshoot, overshoot);
   const int from = std::exchange(block_of_[vertex], block);
   if (from == block) return;
@@ -54,16 +53,20 @@ void MotionBlocks::Assign(int vertex, int block, int cell, double overshoot) {
 }
 
 void MotionBlocks::Connect(int vertex) {
-  const int p = block_of_[vertex];
+  MotionBlock& own = blocks_[block_of_[vertex]];
+  ++own.version;
+  MotionGroup& group = groups_[own.group];
+  group.reach_overshoot = std::max(group.reach_overshoot, group.overshoot);
   for (const int* l = lattice_->vertex_links.begin(vertex); l != lattice_->vertex_links.end(vertex); ++l) {
     const auto& [a, b] = lattice_->links[*l];
-    const int q = block_of_[a == vertex ? b : a];
-    if (p == q) continue;
-    InsertSorted(blocks_[p].neighbours, q);
-    InsertSorted(blocks_[q].neighbours, p);
-    const int g = blocks_[p].group, h = blocks_[q].group;
-    if (g == h) continue;
-    InsertSorted(groups_[std::min(g, h)].later_neighbours, std::max(g, h));
+    MotionBlock& other = blocks_[block_of_[a == vertex ? b : a]];
+    if (b == vertex) ++other.version;
+    if (own.group == other.group) continue;
+    MotionGroup& far = groups_[other.group];
+    group.reach_overshoot = std::max(group.reach_overshoot, far.overshoot);
+    far.reach_overshoot = std::max(far.reach_overshoot, group.overshoot);
+    const auto& [g, h] = std::minmax(own.group, other.group);
+    InsertSorted(groups_[g].later_neighbours, h);
   }
 }
 
@@ -83,18 +86,6 @@ void MotionBlocks::Regroup(const std::vector<int>& blocks, const Tissue& tissue)
     SortUnique(group.particles);
     ++group.version;
   }
-}
-
-void MotionBlocks::MarkAstray(int vertex) {
-  const int block = block_of_[vertex];
-  std::vector<int>& astray = blocks_[block].astray;
-  if (astray.empty()) with_astray_.push_back(block);
-  astray.push_back(vertex);
-}
-
-void MotionBlocks::ForgetAstray() {
-  for (int b : with_astray_) blocks_[b].astray.clear();
-  with_astray_.clear();
 }
 
 }  // namespace meshless_cutting

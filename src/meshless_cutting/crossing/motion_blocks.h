@@ -1,5 +1,6 @@
-// The broad phase's view of the lattice: vertices gathered in blocks, blocks in groups. Bounds of a group or a block
-// come from the particles that its vertices follow, so that a search touches single vertices only near a blade.
+// The broad phase's view of the lattice: vertices gathered in blocks, blocks in groups. Bounds of a group come from the
+// particles that its vertices follow, those of a block from its links, so that a search touches single vertices only
+// near a blade.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +12,22 @@
 
 namespace meshless_cutting {
 
-/// The lattice vertices that follow one integration point.
+/// The lattice vertices that follow one integration point, with the links of which they are the first vertex.
 struct MotionBlock {
   std::vector<int> vertices;
-  std::vector<int> astray;      // those of them whose present window does not start where their particles were
-  std::vector<int> neighbours;  // blocks that some lattice edge leads to, sorted; a superset: never shrinks
-  /// A vertex is at most this share of the extent of the particles' bounds outside these bounds, per axis.
-  double overshoot = 0;
   int group = -1;
+  std::uint32_t version = 0;  // +1 whenever its vertices change, or where some vertex of its links is mapped
 };
 
 /// The blocks in some 2 x 2 x 2 cells of the background grid.
 struct MotionGroup {
   std::vector<int> blocks;
-  std::vector<int> particles;   // of all its blocks
-  std::vector<int> later_neighbours;  // groups of higher index that some lattice edge leads to, as above
-  double overshoot = 0;         // the largest of its blocks
-  std::uint32_t version = 0;    // +1 whenever blocks or particles change
+  std::vector<int> particles;         // of all its blocks
+  std::vector<int> later_neighbours;  // groups of higher index that some link leads to, sorted; never shrinks
+  /// A vertex is at most this share of the extent of the particles' bounds outside these bounds, per axis.
+  double overshoot = 0;
+  double reach_overshoot = 0;  // the same for all vertices of the links from and to its blocks
+  std::uint32_t version = 0;   // +1 whenever blocks or particles change
 };
 
 class MotionBlocks {
@@ -40,14 +40,14 @@ class MotionBlocks {
   void Connect(int vertex);
   /// Gathers the particles of the groups of `blocks` anew: their supports changed. Call after every Assign().
   void Regroup(const std::vector<int>& blocks, const Tissue& tissue);
-  void MarkAstray(int vertex);
-  void ForgetAstray();
+  /// The present window of a vertex does not start where its particles were.
+  void MarkAstray(int vertex) { astray_.push_back(vertex); }
+  void ForgetAstray() { astray_.clear(); }
 
   int block_of(int vertex) const { return block_of_[vertex]; }
   const std::vector<MotionBlock>& blocks() const { return blocks_; }
   const std::vector<MotionGroup>& groups() const { return groups_; }
-  /// Blocks that have astray vertices.
-  const std::vector<int>& with_astray() const { return with_astray_; }
+  const std::vector<int>& astray() const { return astray_; }
 
  private:
   int GroupAt(int cell) const;
@@ -57,8 +57,8 @@ class MotionBlocks {
   std::vector<int> block_of_;  // per lattice vertex
   std::vector<MotionBlock> blocks_;
   std::vector<MotionGroup> groups_;
-  std::vector<int> with_astray_;  // blocks
-  std::vector<int> outdated_;     // groups with new blocks
+  std::vector<int> astray_;    // vertices
+  std::vector<int> outdated_;  // groups with new blocks
 };
 
 }  // namespace meshless_cutting

@@ -1,7 +1,6 @@
 #include "cut/integration_points.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace meshless_cutting {
@@ -33,6 +32,7 @@ IntegrationPoints::IntegrationPoints(const Lattice& lattice, const MaterialGraph
       cells_(grid.cell_count()),
       vertex_points_(lattice.vertices.size()),
       root_(lattice.vertices.size(), -1),
+      group_(lattice.vertices.size()),
       is_clipped_(lattice.tetrahedra.size(), 0) {
   const double sliver = kSliverShare * grid.spacing().prod();
   std::vector<CellVolume> parts;
@@ -67,7 +67,8 @@ void IntegrationPoints::Regroup(int cell_index) {
   Cell& cell = cells_[cell_index];
   if (cell.chips.empty()) return;
   // Union of the lattice vertices of each piece that has material here.
-  std::vector<int> vertices;
+  std::vector<int>& vertices = vertices_;
+  vertices.clear();
   auto find = [&](int v) {
     while (root_[v] != v) v = root_[v] = root_[root_[v]];
     return v;
@@ -90,43 +91,52 @@ void IntegrationPoints::Regroup(int cell_index) {
   }
   std::sort(vertices.begin(), vertices.end());
 
-  std::map<int, IntegrationPoint> groups;  // by root, so in the order of their lowest vertex
-  for (int v : vertices) groups[find(v)].vertices.push_back(v);
+  std::vector<IntegrationPoint> groups;  // in the order of their lowest vertex, which is the root
+  for (int v : vertices) {
+    const int root = find(v);
+    if (root == v) {
+      group_[v] = static_cast<int>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group_[root]].vertices.push_back(v);
+  }
   for (const Chip& chip : cell.chips) {
-    IntegrationPoint& group = groups[find(AnchorOf(chip))];
+    IntegrationPoint& group = groups[group_[find(AnchorOf(chip))]];
     group.volume += chip.volume;
     group.centroid += chip.moment;
   }
-  for (auto& [root, group] : groups) {
+  for (int v : vertices) root_[v] = -1;
+  for (IntegrationPoint& group : groups) {
     group.cell = cell_index;
     group.centroid /= group.volume;
-    for (int p : cell.points)
-      if (std::binary_search(points_[p].vertices.begin(), points_[p].vertices.end(), root)) group.parent = p;
-  }
-  for (int v : vertices) root_[v] = -1;
-
-  // Largest parts inherit the indices.
-  std::map<int, IntegrationPoint*> heirs;
-  for (auto& [root, group] : groups)
-    if (group.parent >= 0) {
-      IntegrationPoint*& heir = heirs[group.parent];
-      if (!heir || group.volume > heir->volume) heir = &group;
+    for (int p : cell.points) {
+      const std::vector<int>& whole = points_[p].vertices;
+      if (std::binary_search(whole.begin(), whole.end(), group.vertices.front())) group.parent = p;
     }
+  }
+
   for (int p : cell.points) {
     for (int v : points_[p].vertices) EraseSorted(vertex_points_[v], p);
     changed_.push_back(p);
   }
-  for (auto& [root, group] : groups) {
-    int index = static_cast<int>(points_.size());
-    if (group.parent >= 0 && heirs[group.parent] == &group) {
-      index = group.parent;
-      points_[index] = group;
-    } else {
-      points_.push_back(group);
-      cell.points.push_back(index);
-      changed_.push_back(index);
+  // The largest part of a point inherits its index.
+  std::vector<int> index(groups.size(), -1);
+  for (int p : cell.points) {
+    int heir = -1;
+    for (int g = 0; g < static_cast<int>(groups.size()); ++g)
+      if (groups[g].parent == p && (heir < 0 || groups[g].volume > groups[heir].volume)) heir = g;
+    if (heir >= 0) index[heir] = p;
+  }
+  for (size_t g = 0; g < groups.size(); ++g) {
+    int& p = index[g];
+    if (p < 0) {
+      p = static_cast<int>(points_.size());
+      points_.emplace_back();
+      cell.points.push_back(p);
+      changed_.push_back(p);
     }
-    for (int v : points_[index].vertices) InsertSorted(vertex_points_[v], index);
+    points_[p] = std::move(groups[g]);
+    for (int v : points_[p].vertices) InsertSorted(vertex_points_[v], p);
   }
 }
 

@@ -70,8 +70,10 @@ class IntegrationPoints {
   std::vector<std::vector<int>> vertex_points_;
   std::vector<std::vector<int>> neighbours_;
   std::vector<int> changed_;
-  // Scratch that is the same between calls.
+  // Scratch, the same between calls where a value is named.
   std::vector<int> root_;                 // of Regroup: per lattice vertex, -1
+  std::vector<int> vertices_;             // of Regroup
+  std::vector<int> group_;                // of Regroup: per lattice vertex that is a root
   std::vector<int> seen_by_;              // of Relink: per point, -1
   std::vector<std::uint8_t> is_clipped_;  // of Update: per tetrahedron, 0
 };

@@ -88,8 +88,7 @@ std::vector<int> SoftBody::MapSurface(const std::vector<int>& changed_points, co
     surface_.positions.emplace_back();
     affected.push_back(v);
   }
-  for (int p : changed_points)
-    affected.insert(affected.end(), mapping_.OnPoint(p).begin(), mapping_.OnPoint(p).end());
+  for (int p : changed_points) affected.insert(affected.end(), mapping_.OnPoint(p).begin(), mapping_.OnPoint(p).end());
   for (const LinkCut& cut : cuts)
     for (int end : lattice_->links[cut.link])
       if (const int v = cut_surface_.VertexOf(end); v >= 0) affected.push_back(v);
@@ -130,7 +129,8 @@ void SoftBody::FindFragments() {
   };
   for (int p = 0; p < tissue_.point_count(); ++p) {
     const int a = find(tissue_.point_particles[p * K]);
-    for (size_t k = 1; k < K; ++k) root[find(tissue_.point_particles[p * K + k])] = a;
+    for (size_t k = 1; k < K; ++k)
+      if (const int j = tissue_.point_particles[p * K + k]; root[j] != a) root[find(j)] = a;
   }
   std::vector<double> volume(root.size(), 0);
   for (int p = 0; p < tissue_.point_count(); ++p)

@@ -17,9 +17,12 @@ void Fragments::Build(const Tissue& tissue) {
   };
   for (int p = 0; p < tissue.point_count(); ++p) {
     const int* support = &tissue.point_particles[static_cast<std::size_t>(p) * K];
+    int root = find(support[0]);
     for (int k = 1; k < K; ++k) {
-      const int a = find(support[0]), b = find(support[k]);
-      parent_[std::max(a, b)] = std::min(a, b);
+      if (parent_[support[k]] == root) continue;
+      const int other = find(support[k]);
+      parent_[std::max(root, other)] = std::min(root, other);
+      root = std::min(root, other);
     }
   }
   of_particle.resize(particles);

@@ -16,11 +16,8 @@ constexpr double kFlat = 1e-8;
 }  // namespace
 
 void LightParticles::Build(const Tissue& tissue, double cell_m) {
-  support_ = tissue.support_size;
   reach_ = kReach * cell_m;
-  particles_.clear();
-  anchors_.clear();
-  weights_.clear();
+  FindChanges(tissue);
   by_mass_.clear();
   double most = 0;
   for (double m : tissue.particle_mass) most = std::max(most, m);
@@ -28,46 +25,84 @@ void LightParticles::Build(const Tissue& tissue, double cell_m) {
     const double m = tissue.particle_mass[j];
     if (m > 0 && m < kShare * most && !tissue.particle_fixed[j]) by_mass_.emplace_back(-m, j);
   }
-  if (by_mass_.empty()) return;
   std::sort(by_mass_.begin(), by_mass_.end());
+  particles_.clear();
+  bool are_listed = false;
+  for (const auto& [mass, j] : by_mass_) {
+    const int own = followers_[j].own;
+    const int* support = own < 0 ? nullptr : &tissue.point_particles[static_cast<std::size_t>(own) * support_];
+    if (own < 0 || std::any_of(support, support + support_, [&](int s) { return touched_[s] != 0; })) {
+      if (!std::exchange(are_listed, true)) ListPoints(tissue);
+      FindAnchor(tissue, j);
+    }
+    if (followers_[j].anchor >= 0) particles_.push_back(j);
+  }
+}
 
-  // The points of each particle.
-  const std::size_t K = support_;
+void LightParticles::FindChanges(const Tissue& tissue) {
+  const std::size_t K = tissue.support_size;
+  if (std::exchange(support_, tissue.support_size) != tissue.support_size) {
+    point_particles_.clear();
+    point_volume_.clear();
+    followers_.clear();
+  }
+  touched_.assign(tissue.particle_count(), 0);
+  followers_.resize(tissue.particle_count());
+  weights_.resize(tissue.particle_count() * K);
+  for (std::size_t p = 0; p < tissue.point_volume.size(); ++p) {
+    const int* now = &tissue.point_particles[p * K];
+    const bool is_new = p >= point_volume_.size();
+    if (!is_new && tissue.point_volume[p] == point_volume_[p] && std::equal(now, now + K, &point_particles_[p * K])) {
+      continue;
+    }
+    for (std::size_t k = 0; k < K; ++k) {
+      touched_[now[k]] = 1;
+      if (!is_new) touched_[point_particles_[p * K + k]] = 1;
+    }
+  }
+  point_particles_ = tissue.point_particles;
+  point_volume_ = tissue.point_volume;
+}
+
+void LightParticles::ListPoints(const Tissue& tissue) {
   point_begin_.assign(tissue.particle_count() + 1, 0);
   for (int j : tissue.point_particles) ++point_begin_[j];
   for (int j = 1; j <= tissue.particle_count(); ++j) point_begin_[j] += point_begin_[j - 1];
   points_.resize(tissue.point_particles.size());
   shared_.assign(tissue.point_count(), 0);
   for (int p = tissue.point_count() - 1; p >= 0; --p) {
-    for (std::size_t k = 0; k < K; ++k) points_[--point_begin_[tissue.point_particles[p * K + k]]] = p;
-  }
-
-  for (const auto& [mass, j] : by_mass_) {
-    int own = -1;  // the largest of its points
-    for (int i = point_begin_[j]; i < point_begin_[j + 1]; ++i) {
-      if (own < 0 || tissue.point_volume[points_[i]] > tissue.point_volume[own]) own = points_[i];
-    }
-    // The largest point that shares a face with that one and does not hold j: material behind the flake.
-    const int* support = &tissue.point_particles[own * K];
-    int anchor = -1;
-    const auto for_each_neighbour = [&](auto&& visit) {
-      for (std::size_t k = 0; k < K; ++k) {
-        for (int i = point_begin_[support[k]]; i < point_begin_[support[k] + 1]; ++i) visit(points_[i]);
-      }
-    };
-    for_each_neighbour([&](int p) { ++shared_[p]; });
-    for (int i = point_begin_[j]; i < point_begin_[j + 1]; ++i) shared_[points_[i]] = 0;
-    for_each_neighbour([&](int p) {
-      const double volume = tissue.point_volume[p], most_so_far = tissue.point_volume[anchor < 0 ? own : anchor];
-      if (shared_[p] >= kFace && (volume > most_so_far || (anchor >= 0 && volume == most_so_far && p < anchor))) anchor = p;
-    });
-    for_each_neighbour([&](int p) { shared_[p] = 0; });
-    if (anchor >= 0) AddWeights(tissue, j, anchor);
+    for (int k = 0; k < support_; ++k) points_[--point_begin_[tissue.point_particles[p * support_ + k]]] = p;
   }
 }
 
-void LightParticles::AddWeights(const Tissue& tissue, int particle, int anchor) {
-  const int* support = &tissue.point_particles[static_cast<std::size_t>(anchor) * support_];
+void LightParticles::FindAnchor(const Tissue& tissue, int particle) {
+  auto& [own, anchor] = followers_[particle];
+  own = anchor = -1;
+  for (int i = point_begin_[particle]; i < point_begin_[particle + 1]; ++i) {
+    if (own < 0 || tissue.point_volume[points_[i]] > tissue.point_volume[own]) own = points_[i];
+  }
+  // The largest point that shares a face with that one and does not hold the particle: material behind the flake.
+  const int* support = &tissue.point_particles[static_cast<std::size_t>(own) * support_];
+  const auto for_each_neighbour = [&](auto&& visit) {
+    for (int k = 0; k < support_; ++k) {
+      for (int i = point_begin_[support[k]]; i < point_begin_[support[k] + 1]; ++i) visit(points_[i]);
+    }
+  };
+  for_each_neighbour([&](int p) { ++shared_[p]; });
+  for (int i = point_begin_[particle]; i < point_begin_[particle + 1]; ++i) shared_[points_[i]] = 0;
+  double largest = tissue.point_volume[own];
+  for_each_neighbour([&, &anchor = anchor](int p) {
+    const double volume = tissue.point_volume[p];
+    if (shared_[p] < kFace || volume < largest || (volume == largest && (anchor < 0 || p >= anchor))) return;
+    anchor = p;
+    largest = volume;
+  });
+  for_each_neighbour([&](int p) { shared_[p] = 0; });
+  if (anchor >= 0 && !Fit(tissue, particle)) anchor = -1;
+}
+
+bool LightParticles::Fit(const Tissue& tissue, int particle) {
+  const int* support = &tissue.point_particles[static_cast<std::size_t>(followers_[particle].anchor) * support_];
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (int k = 0; k < support_; ++k) mean += tissue.particle_rest[support[k]] / support_;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -78,23 +113,22 @@ void LightParticles::AddWeights(const Tissue& tissue, int particle, int anchor) 
   Eigen::Matrix3d inverse;
   bool is_spread_out = false;  // else flat: says nothing about motion beyond itself
   spread.computeInverseWithCheck(inverse, is_spread_out, kFlat * std::pow(spread.trace(), 3));
-  if (!is_spread_out) return;
+  if (!is_spread_out) return false;
   const Eigen::Vector3d way = inverse * (tissue.particle_rest[particle] - mean);
-  particles_.push_back(particle);
-  for (int k = 0; k < support_; ++k) {
-    anchors_.push_back(support[k]);
-    weights_.push_back(1.0 / support_ + way.dot(tissue.particle_rest[support[k]] - mean));
-  }
+  double* weights = &weights_[static_cast<std::size_t>(particle) * support_];
+  for (int k = 0; k < support_; ++k) weights[k] = 1.0 / support_ + way.dot(tissue.particle_rest[support[k]] - mean);
+  return true;
 }
 
 void LightParticles::Follow(Field& position, Field& velocity, Field& acceleration) const {
-  for (int n = 0; n < count(); ++n) {
-    const int j = particles_[n];
+  for (int j : particles_) {
+    const int* anchor = &point_particles_[static_cast<std::size_t>(followers_[j].anchor) * support_];
+    const double* weight = &weights_[static_cast<std::size_t>(j) * support_];
     Vector4 x, v, a;
-    for (int i = n * support_; i < (n + 1) * support_; ++i) {
-      x += weights_[i] * position[anchors_[i]];
-      v += weights_[i] * velocity[anchors_[i]];
-      a += weights_[i] * acceleration[anchors_[i]];
+    for (int k = 0; k < support_; ++k) {
+      x += weight[k] * position[anchor[k]];
+      v += weight[k] * velocity[anchor[k]];
+      a += weight[k] * acceleration[anchor[k]];
     }
     velocity[j] = v;
     acceleration[j] = a;

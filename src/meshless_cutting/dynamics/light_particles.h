@@ -1,6 +1,7 @@
 // Particles that carry next to no mass, kept from flying about.
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -10,18 +11,19 @@
 namespace meshless_cutting {
 
 /// Where a cut leaves a flake in the corner of a cell, the particles on the far side of that cell hold a ten-thousandth
-/// of the mass of others, and the forces that place them are as small: they drown in the residual at which a solver stops
-/// (the small cut cells of unfitted methods; Burman 2010, Ghost penalty). What is left of their place is noise; divided by
-/// the time step it makes velocities of metres per second, which carry them farther off in the next step, until a flake is
-/// stretched beyond what Newton's method finds back from. So they keep no velocity of their own: after each step they take
-/// that of the affine motion of the next larger point, and stay within kReach cells of the place where it would have them.
+/// of the mass of others, and the forces that place them are as small: they drown in the residual at which a solver
+/// stops (the small cut cells of unfitted methods; Burman 2010, Ghost penalty). What is left of their place is noise;
+/// divided by the time step it makes velocities of metres per second, which carry them farther off in the next step,
+/// until a flake is stretched beyond what Newton's method finds back from. So they keep no velocity of their own: after
+/// each step they take that of the affine motion of the next larger point, and stay within kReach cells of the place
+/// where it would have them.
 class LightParticles {
  public:
   /// Share of the mass of a particle amid full cells below which a particle is light.
   static constexpr double kShare = 0.05;
   static constexpr double kReach = 0.5;
 
-  /// Finds them and their anchors. Allocates only to grow.
+  /// Finds them and their anchors: those of the last call, but near points that changed since. Allocates only to grow.
   void Build(const Tissue& tissue, double cell_m);
 
   /// After a step. Changes momentum by what light particles carry, nothing else.
@@ -30,16 +32,29 @@ class LightParticles {
   int count() const { return static_cast<int>(particles_.size()); }
 
  private:
-  /// Adds a particle, with the weights by which the affine fit to the anchor's particles says where it is.
-  void AddWeights(const Tissue& tissue, int particle, int anchor);
+  /// What a particle follows; holds until a point at the particles of `own` changes.
+  struct Follower {
+    int own = -1;     // the largest of its points; -1: not looked for
+    int anchor = -1;  // point; -1: none
+  };
+  void FindChanges(const Tissue& tissue);
+  void ListPoints(const Tissue& tissue);
+  void FindAnchor(const Tissue& tissue, int particle);
+  /// The weights by which the affine fit to the particles of its anchor says where a particle is; false: no fit.
+  bool Fit(const Tissue& tissue, int particle);
 
-  int support_ = 8;
-  double reach_ = 0;                // m
-  std::vector<int> particles_;      // heavy ones first: what a light one follows has settled before
-  std::vector<int> anchors_;        // K particles each
-  std::vector<double> weights_;     // K each
-  std::vector<std::pair<double, int>> by_mass_;      // scratch
-  std::vector<int> point_begin_, points_, shared_;  // scratch: the points of each particle; per point, with another
+  int support_ = 0;
+  double reach_ = 0;                 // m
+  std::vector<int> particles_;       // heavy ones first: what a light one follows has settled before
+  std::vector<Follower> followers_;  // per particle of the tissue
+  std::vector<double> weights_;      // K each
+  // Of the tissue in the last call.
+  std::vector<int> point_particles_;
+  std::vector<double> point_volume_;
+  // Scratch.
+  std::vector<std::uint8_t> touched_;  // per particle: at a point that changed
+  std::vector<std::pair<double, int>> by_mass_;
+  std::vector<int> point_begin_, points_, shared_;  // the points of each particle; per point, particles with another
 };
 
 }  // namespace meshless_cutting

@@ -2,8 +2,26 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace meshless_cutting {
+namespace {
+
+/// A weighted sum of three-vectors: two components in one instruction, which Eigen does not do for them.
+class PackedSum {
+ public:
+  void Add(double weight, const Eigen::Vector3d& x) {
+    xy_ += weight * Eigen::Map<const Eigen::Vector2d>(x.data());
+    z_ += weight * x[2];
+  }
+  Eigen::Vector3d value() const { return {xy_[0], xy_[1], z_}; }
+
+ private:
+  Eigen::Vector2d xy_ = Eigen::Vector2d::Zero();
+  double z_ = 0;
+};
+
+}  // namespace
 
 VertexMapping::VertexMapping(const IntegrationPoints& points, const ShapeFunctions& shape, const Tissue& tissue)
     : points_(&points), shape_(&shape), tissue_(&tissue) {
@@ -14,6 +32,7 @@ void VertexMapping::Add(const Eigen::Vector3d& X, int anchor) {
   rest_.push_back(X);
   anchor_.push_back(anchor);
   point_.push_back(-1);
+  cell_.push_back(-1);
   cut_plane_.emplace_back();
   links_.particles.resize(links_.particles.size() + links_.support_size, 0);
   links_.weights.resize(links_.weights.size() + links_.support_size, 0);
@@ -112,8 +131,9 @@ void VertexMapping::Assign(int v, int point) {
   if (static_cast<size_t>(point) >= on_point_.size()) on_point_.resize(point + 1);
   on_point_[point].push_back(v);
   Refresh(v);
-  const size_t K = static_cast<size_t>(links_.support_size);
-  shape_->Values(points_->points()[point].cell, rest_[v], &links_.weights[v * K]);
+  const int cell = points_->points()[point].cell;
+  if (std::exchange(cell_[v], cell) == cell) return;  // the weights are those of the cell
+  shape_->Values(cell, rest_[v], &links_.weights[static_cast<size_t>(v) * static_cast<size_t>(links_.support_size)]);
 }
 
 double VertexMapping::overshoot(int v) const {
@@ -125,9 +145,11 @@ double VertexMapping::overshoot(int v) const {
 
 Eigen::Vector3d VertexMapping::Position(int v, const std::vector<Eigen::Vector3d>& particles) const {
   const size_t K = static_cast<size_t>(links_.support_size);
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (size_t k = 0; k < K; ++k) x += links_.weights[v * K + k] * particles[links_.particles[v * K + k]];
-  return x;
+  const double* weights = &links_.weights[v * K];
+  const int* indices = &links_.particles[v * K];
+  PackedSum x;
+  for (size_t k = 0; k < K; ++k) x.Add(weights[k], particles[indices[k]]);
+  return x.value();
 }
 
 void VertexMapping::Positions(int v, const std::vector<Eigen::Vector3d>& particles_t0,
@@ -135,14 +157,14 @@ void VertexMapping::Positions(int v, const std::vector<Eigen::Vector3d>& particl
                               Eigen::Vector3d& x_t1) const {
   const size_t K = static_cast<size_t>(links_.support_size);
   const double* weights = &links_.weights[v * K];
-  const int* particles = &links_.particles[v * K];
-  Eigen::Vector3d sum_t0 = Eigen::Vector3d::Zero(), sum_t1 = sum_t0;
+  const int* indices = &links_.particles[v * K];
+  PackedSum sum_t0, sum_t1;
   for (size_t k = 0; k < K; ++k) {
-    sum_t0 += weights[k] * particles_t0[particles[k]];
-    sum_t1 += weights[k] * particles_t1[particles[k]];
+    sum_t0.Add(weights[k], particles_t0[indices[k]]);
+    sum_t1.Add(weights[k], particles_t1[indices[k]]);
   }
-  x_t0 = sum_t0;
-  x_t1 = sum_t1;
+  x_t0 = sum_t0.value();
+  x_t1 = sum_t1.value();
 }
 
 }  // namespace meshless_cutting

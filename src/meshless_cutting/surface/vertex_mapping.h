@@ -92,7 +92,7 @@ class VertexMapping {
   const ShapeFunctions* shape_;
   const Tissue* tissue_;
   std::vector<Eigen::Vector3d> rest_;
-  std::vector<int> anchor_, point_;
+  std::vector<int> anchor_, point_, cell_;  // cell_: of the point that a vertex was mapped on last
   std::vector<CutPlane> cut_plane_;
   std::vector<std::vector<int>> on_point_;
   SurfacePoints links_;
