@@ -14,5 +14,14 @@ TEST(RandomSessions, MotionStaysPhysical) {
   EXPECT_GT(counts.most_fragments, 3);
 }
 
+TEST(RandomSessions, ASessionThatGetsStuckComesBack) {
+  // A strand that holds most of the block: it does not tear, but is drawn out until no step is found. Without a last
+  // resort the rest of the session stood still.
+  SessionCounts counts;
+  SearchSession(201, 480, counts, true);
+  EXPECT_GT(counts.given_up, 0);
+  EXPECT_LT(counts.given_up, 4);
+}
+
 }  // namespace
 }  // namespace meshless_cutting

@@ -59,7 +59,7 @@ void Feed(Simulation& simulation, const std::vector<Stroke>& strokes, double fro
 
 }  // namespace
 
-std::string SearchSession(std::uint64_t seed, int frames, SessionCounts& counts) {
+std::string SearchSession(std::uint64_t seed, int frames, SessionCounts& counts, bool go_on) {
   Scene scene = ReadScene(MESHLESS_CUTTING_SOURCE_DIR "/launch/block.yaml");
   scene.solver.threads = 1;
   Simulation simulation(scene);
@@ -70,12 +70,16 @@ std::string SearchSession(std::uint64_t seed, int frames, SessionCounts& counts)
   ++counts.sessions;
   counts.strokes += static_cast<long>(strokes.size());
   const FrameStatistics& frame = simulation.statistics();
+  std::string last;
+  long given_up = 0;
   for (int n = 0; n < frames; ++n) {
     Feed(simulation, strokes, frame.time_s, frame.time_s + scene.time_step_s);
     simulation.Step();
     ++counts.frames;
     counts.hard_frames += frame.newton_iterations > 8;
     counts.most_fragments = std::max<long>(counts.most_fragments, frame.fragments);
+    given_up = frame.status & kStepFrozen ? given_up + 1 : 0;
+    counts.given_up = std::max(counts.given_up, given_up);
     std::ostringstream failure;
     if (frame.status & kStepFrozen) failure << "a step was given up";
     if (frame.status & kStepRolledBack) failure << "a step was repeated in halves";
@@ -88,9 +92,11 @@ std::string SearchSession(std::uint64_t seed, int frames, SessionCounts& counts)
         break;
       }
     }
-    if (!failure.str().empty()) return "frame " + std::to_string(n) + ": " + failure.str();
+    if (failure.str().empty()) continue;
+    last = "frame " + std::to_string(n) + ": " + failure.str();
+    if (!go_on) break;
   }
-  return "";
+  return last;
 }
 
 }  // namespace meshless_cutting

@@ -144,6 +144,7 @@ AdvanceResult Dynamics::Advance(const Tissue& tissue, const SurfacePoints& skin,
     p.asleep = false;
     p.elastic_force_is = Parts::ElasticForceIs::kOfAnotherState;
     p.position = p.start_position;
+    p.strain_limit.Apply(tissue, p.potential.free, p.position);
     std::fill(p.velocity.begin(), p.velocity.end(), Vector4());
     std::fill(p.acceleration.begin(), p.acceleration.end(), Vector4());
   }

@@ -17,7 +17,7 @@ enum StepStatus : std::uint32_t {
   kStepOk = 0,
   kStepNotConverged = 1 << 0,  // residual above the tolerance when the iterations ran out; the state is finite and usable
   kStepRolledBack = 1 << 1,    // a trial state was not usable; the frame was repeated in halves from the last good state
-  kStepFrozen = 1 << 2,        // even the halves failed: positions of the last frame are kept, velocities are zero
+  kStepFrozen = 1 << 2,        // even the halves failed: positions are kept but where strained beyond use, velocities are zero
 };
 
 /// What to solve. Absent parts are never built.

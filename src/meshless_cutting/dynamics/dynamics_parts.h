@@ -18,6 +18,7 @@
 #include "dynamics/newton.h"
 #include "dynamics/solver_choice.h"
 #include "dynamics/stiffness_damping_term.h"
+#include "dynamics/strain_limit.h"
 #include "dynamics/time_scheme.h"
 #include "dynamics/viscous_term.h"
 
@@ -48,9 +49,14 @@ struct Dynamics::Parts {
   /// One step into end_position, end_velocity, end_acceleration: by Newton's method. Where a second order step ends
   /// badly it is made again with a more cautious scheme, and once more as implicit Euler.
   bool SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result);
-  /// Whether the step that ends in end_position, end_velocity must not be taken: `growth` is the most energy, J, that
-  /// it may end with.
-  bool IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth);
+  struct StepEnergy {
+    double total_j = 0;   // of strain, motion and gravity, the last relative to position; contact has none worth counting
+    double flight_j = 0;  // what of it belongs to the flight of free fragments as wholes
+  };
+  /// Whether the step that ends in end_position, end_velocity must not be taken.
+  bool IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, const StepEnergy& start);
+  /// The step ends with more energy than one that starts with `start` may.
+  bool GainsEnergy(const Tissue& tissue, const StepEnergy& start);
   /// As SolveImplicit, in many small steps. False also when the energy grows: the steps were too long for what the
   /// object has become.
   bool SolveExplicit(const Tissue& tissue, double time_step);
@@ -64,10 +70,8 @@ struct Dynamics::Parts {
   /// Energy of strain, J; leaves its gradient in elastic_force.
   enum class ElasticForceIs { kOfAnotherState, kOfPosition, kOfTheEnd };
   double EvaluateElastic(const Field& x, ElasticForceIs of);
-  /// Energy of motion and gravity, relative to position, J. Contact has none worth counting.
-  double OtherEnergyOf(const Tissue& tissue, const Field& x, const Field& v);
-  /// The most energy that a step from position, velocity may end with, J.
-  double EnergyAtStart(const Tissue& tissue);
+  StepEnergy EnergyAtStart(const Tissue& tissue);
+  StepEnergy EnergyOf(const Tissue& tissue, double stored, const Field& x, const Field& v);
 
   // dynamics.cpp
   /// The frame: `steps` equal steps from the start of the frame; false when one of them failed.
@@ -91,6 +95,7 @@ struct Dynamics::Parts {
   std::optional<ExplicitSteps> explicit_steps;
   Fragments fragments;
   Grains grains;
+  StrainLimit strain_limit;
   LightParticles light;
 
   bool is_rescue = false;  // explicit steps have failed: this frame is made of steps of implicit Euler

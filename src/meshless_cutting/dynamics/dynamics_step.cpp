@@ -43,15 +43,16 @@ bool Dynamics::Parts::Solve(const Tissue& tissue, double time_step, AdvanceResul
 
 bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& scheme, AdvanceResult& result) {
   const bool is_second_order = choice.integrator == Integrator::kGeneralizedAlpha;
-  const double growth = is_second_order ? EnergyAtStart(tissue) : 0;
+  const StepEnergy start = is_second_order ? EnergyAtStart(tissue) : StepEnergy();
   NewtonSolver::Verdict verdict = Attempt(tissue, scheme, is_second_order ? 2 : 1, result);
-  if (is_second_order && IsBad(tissue, verdict, result.relative_residual, growth)) {
+  if (is_second_order && IsBad(tissue, verdict, result.relative_residual, start)) {
     // The end of a generalised-alpha step lies beyond the stage that was solved for. After violence that is no place to
     // go.
     verdict = Attempt(tissue, TimeScheme(choice.integrator, scheme.time_step_s(), true), 1, result);
-    if (IsBad(tissue, verdict, result.relative_residual, growth)) {
+    if (IsBad(tissue, verdict, result.relative_residual, start)) {
       verdict = Attempt(tissue, TimeScheme(Integrator::kImplicitEuler, scheme.time_step_s()), 1, result);
       elastic_force_is = ElasticForceIs::kOfAnotherState;
+      if (GainsEnergy(tissue, start)) return false;
     }
   }
   if (verdict == NewtonSolver::Verdict::kFailed) return false;
@@ -60,13 +61,20 @@ bool Dynamics::Parts::SolveImplicit(const Tissue& tissue, const TimeScheme& sche
   return true;
 }
 
-bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, double growth) {
-  if (verdict == NewtonSolver::Verdict::kFailed || residual > kUnbalanced) return true;
+bool Dynamics::Parts::IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual,
+                            const StepEnergy& start) {
+  return verdict == NewtonSolver::Verdict::kFailed || residual > kUnbalanced || GainsEnergy(tissue, start);
+}
+
+bool Dynamics::Parts::GainsEnergy(const Tissue& tissue, const StepEnergy& start) {
   if (IsMoving()) return false;  // who moves held particles puts energy in
-  const double stored = viscous ? viscous->StoredEnergyAt(end_position) : 0;
-  return !(stored + EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) +
-               OtherEnergyOf(tissue, end_position, end_velocity) <=
-           growth);
+  double stored = EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd);
+  if (viscous) stored += explicit_steps && !is_rescue ? viscous->StoredEnergy() : viscous->StoredEnergyAt(end_position);
+  const StepEnergy end = EnergyOf(tissue, stored, end_position, end_velocity);
+  // What flies free does not feed what shakes, unless it hits something.
+  const double share = !contact || contact->IsFar() ? 1 : 0;
+  const double most = kEnergyGrowth * (start.total_j - share * start.flight_j) + energy_floor;
+  return !(end.total_j - share * end.flight_j <= most);
 }
 
 NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeScheme& scheme, int rounds,
@@ -163,22 +171,22 @@ double Dynamics::Parts::EvaluateElastic(const Field& x, ElasticForceIs of) {
   return elastic_energy;
 }
 
-double Dynamics::Parts::EnergyAtStart(const Tissue& tissue) {
+Dynamics::Parts::StepEnergy Dynamics::Parts::EnergyAtStart(const Tissue& tissue) {
   if (elastic_force_is != ElasticForceIs::kOfPosition) EvaluateElastic(position, ElasticForceIs::kOfPosition);
-  const double stored = viscous ? viscous->StoredEnergy() : 0;
-  const double growth =
-      kEnergyGrowth * (stored + elastic_energy + OtherEnergyOf(tissue, position, velocity)) + energy_floor;
   elastic_force_is = ElasticForceIs::kOfAnotherState;  // soon
-  return growth;
+  return EnergyOf(tissue, elastic_energy + (viscous ? viscous->StoredEnergy() : 0), position, velocity);
 }
 
-double Dynamics::Parts::OtherEnergyOf(const Tissue& tissue, const Field& x, const Field& v) {
-  double energy = 0;
+Dynamics::Parts::StepEnergy Dynamics::Parts::EnergyOf(const Tissue& tissue, double stored, const Field& x,
+                                                      const Field& v) {
   const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
+  StepEnergy energy;
+  energy.total_j = stored;
   for (int j = 0; j < particles; ++j) {
-    energy += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
-    if (!force.empty()) energy -= Dot(force[j], x[j] - position[j]);
+    energy.total_j += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
+    if (!force.empty()) energy.total_j -= Dot(force[j], x[j] - position[j]);
   }
+  energy.flight_j = fragments.EnergyOfFlight(tissue.particle_mass, gravity, position, x, v);
   return energy;
 }
 
@@ -188,7 +196,6 @@ bool Dynamics::Parts::SolveExplicit(const Tissue& tissue, double time_step) {
   if (config.damping) acting.mass_damping = config.damping->mass_per_s;
   if (config.damping) acting.stiffness_damping = config.damping->stiffness_s;
   if (!force.empty()) acting.dead = &force;
-  const bool is_moving = IsMoving();
   if (!driven_end.empty()) {
     for (int j = 0; j < particles; ++j) stage[j] = position[j] + driven_share * (driven_end[j] - position[j]);
     acting.held_end = &stage;
@@ -197,15 +204,12 @@ bool Dynamics::Parts::SolveExplicit(const Tissue& tissue, double time_step) {
   end_position = position;
   end_velocity = velocity;
   end_acceleration = acceleration;
-  const double growth = EnergyAtStart(tissue);
+  const StepEnergy start = EnergyAtStart(tissue);
   if (!explicit_steps->Run(tissue.particle_mass, acting, time_step / steps, steps, end_position, end_velocity,
                            end_acceleration)) {
     return false;
   }
-  const double stored = viscous ? viscous->StoredEnergy() : 0;
-  return is_moving ||
-         stored + EvaluateElastic(end_position, ElasticForceIs::kOfTheEnd) + OtherEnergyOf(tissue, end_position, end_velocity) <=
-             growth;
+  return !GainsEnergy(tissue, start);
 }
 
 }  // namespace meshless_cutting

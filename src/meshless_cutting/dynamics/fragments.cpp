@@ -54,4 +54,24 @@ void Fragments::Balance(const Field& residual, const std::vector<double>& inerti
   }
 }
 
+double Fragments::EnergyOfFlight(const std::vector<double>& mass, const Vector4& gravity, const Field& start,
+                                 const Field& x, const Field& v) {
+  std::vector<double>& total = weight_;
+  Field& momentum = force_;
+  std::fill(momentum.begin(), momentum.end(), Vector4());
+  std::fill(total.begin(), total.end(), 0.0);
+  double energy = 0;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    const int f = of_particle[j];
+    if (held[f]) continue;
+    momentum[f] += mass[j] * v[j];
+    total[f] += mass[j];
+    energy -= mass[j] * Dot(gravity, x[j] - start[j]);
+  }
+  for (int f = 0; f < count(); ++f) {
+    if (total[f] > 0) energy += 0.5 / total[f] * Dot(momentum[f], momentum[f]);
+  }
+  return energy;
+}
+
 }  // namespace meshless_cutting

@@ -22,6 +22,11 @@ struct Fragments {
   /// change, and momentum is conserved to rounding however early the iterations stopped.
   void Balance(const Field& residual, const std::vector<double>& inertia, Field& y);
 
+  /// Energy of the flight of all fragments that are not held, J: what their centres of mass have by their velocity, and by
+  /// their way from `start` in a field of gravity. `mass` kg per particle.
+  double EnergyOfFlight(const std::vector<double>& mass, const Vector4& gravity, const Field& start, const Field& x,
+                        const Field& v);
+
  private:
   std::vector<int> parent_;
   Field force_;
