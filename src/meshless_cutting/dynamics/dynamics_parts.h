@@ -55,8 +55,8 @@ struct Dynamics::Parts {
   };
   /// Whether the step that ends in end_position, end_velocity must not be taken.
   bool IsBad(const Tissue& tissue, NewtonSolver::Verdict verdict, double residual, const StepEnergy& start);
-  /// The step ends with more energy than one that starts with `start` may.
-  bool GainsEnergy(const Tissue& tissue, const StepEnergy& start);
+  /// The step ends with more than `growth` times the energy that it starts with.
+  bool GainsEnergy(const Tissue& tissue, const StepEnergy& start, double growth);
   /// As SolveImplicit, in many small steps. False also when the energy grows: the steps were too long for what the
   /// object has become.
   bool SolveExplicit(const Tissue& tissue, double time_step);
