@@ -20,7 +20,7 @@ TEST(RandomSessions, ASessionThatGetsStuckComesBack) {
   SessionCounts counts;
   SearchSession(201, 480, counts, true);
   EXPECT_GT(counts.given_up, 0);
-  EXPECT_LT(counts.given_up, 4);
+  EXPECT_LT(counts.given_up, 3);  // in a row
 }
 
 }  // namespace
