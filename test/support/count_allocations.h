@@ -48,8 +48,16 @@ void* operator new(std::size_t size) { return meshless_cutting::counting::Alloca
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return meshless_cutting::counting::Allocate(size, static_cast<std::size_t>(alignment));
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return meshless_cutting::counting::Allocate(size, 1);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* memory) noexcept { meshless_cutting::counting::Free(memory, 1); }
 void operator delete(void* memory, std::size_t) noexcept { meshless_cutting::counting::Free(memory, 1); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { meshless_cutting::counting::Free(memory, 1); }
 void operator delete(void* memory, std::align_val_t alignment) noexcept {
   meshless_cutting::counting::Free(memory, static_cast<std::size_t>(alignment));
 }
