@@ -70,7 +70,9 @@ struct Dynamics::Parts {
   /// Energy of strain, J; leaves its gradient in elastic_force.
   enum class ElasticForceIs { kOfAnotherState, kOfPosition, kOfTheEnd };
   double EvaluateElastic(const Field& x, ElasticForceIs of);
+  /// Of position, velocity.
   StepEnergy EnergyAtStart(const Tissue& tissue);
+  /// Of any state; `stored`: its energy of strain, J.
   StepEnergy EnergyOf(const Tissue& tissue, double stored, const Field& x, const Field& v);
 
   // dynamics.cpp

@@ -17,7 +17,7 @@ constexpr double kFlat = 1e-8;
 
 void LightParticles::Build(const Tissue& tissue, double cell_m) {
   reach_ = kReach * cell_m;
-  FindChanges(tissue);
+  ForgetChanged(tissue);
   by_mass_.clear();
   double most = 0;
   for (double m : tissue.particle_mass) most = std::max(most, m);
@@ -29,9 +29,7 @@ void LightParticles::Build(const Tissue& tissue, double cell_m) {
   particles_.clear();
   bool are_listed = false;
   for (const auto& [mass, j] : by_mass_) {
-    const int own = followers_[j].own;
-    const int* support = own < 0 ? nullptr : &tissue.point_particles[static_cast<std::size_t>(own) * support_];
-    if (own < 0 || std::any_of(support, support + support_, [&](int s) { return touched_[s] != 0; })) {
+    if (followers_[j].own < 0) {
       if (!std::exchange(are_listed, true)) ListPoints(tissue);
       FindAnchor(tissue, j);
     }
@@ -39,7 +37,7 @@ void LightParticles::Build(const Tissue& tissue, double cell_m) {
   }
 }
 
-void LightParticles::FindChanges(const Tissue& tissue) {
+void LightParticles::ForgetChanged(const Tissue& tissue) {
   const std::size_t K = tissue.support_size;
   if (std::exchange(support_, tissue.support_size) != tissue.support_size) {
     point_particles_.clear();
@@ -59,6 +57,12 @@ void LightParticles::FindChanges(const Tissue& tissue) {
       touched_[now[k]] = 1;
       if (!is_new) touched_[point_particles_[p * K + k]] = 1;
     }
+  }
+  // Also of particles that are not light just now, and may be later.
+  for (Follower& follower : followers_) {
+    if (follower.own < 0) continue;
+    const int* support = &tissue.point_particles[static_cast<std::size_t>(follower.own) * K];
+    if (std::any_of(support, support + K, [&](int s) { return touched_[s] != 0; })) follower = Follower();
   }
   point_particles_ = tissue.point_particles;
   point_volume_ = tissue.point_volume;

@@ -37,7 +37,8 @@ class LightParticles {
     int own = -1;     // the largest of its points; -1: not looked for
     int anchor = -1;  // point; -1: none
   };
-  void FindChanges(const Tissue& tissue);
+  /// Forgets whom particles near points that changed since the last call follow.
+  void ForgetChanged(const Tissue& tissue);
   void ListPoints(const Tissue& tissue);
   void FindAnchor(const Tissue& tissue, int particle);
   /// The weights by which the affine fit to the particles of its anchor says where a particle is; false: no fit.
