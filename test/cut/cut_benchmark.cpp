@@ -76,10 +76,12 @@ class Slice {
     return motion;
   }
 
-  void MoveBody() {
+  /// Up to 0.1 mm a frame along each of two axes, every part its own way, and the whole to and fro.
+  void MoveBody(double swing_m = 0) {
     body_.BeginAdvance();
     for (Eigen::Vector3d& x : body_.mutable_state().position)
-      x += 1e-4 * Eigen::Vector3d(std::sin(30 * x[1] + 0.2 * frame_), std::cos(20 * x[0] + 0.3 * frame_), 0);
+      x += Eigen::Vector3d(1e-4 * std::sin(30 * x[1] + 0.2 * frame_),
+                           1e-4 * std::cos(20 * x[0] + 0.3 * frame_) + swing_m * std::cos(0.2 * frame_), 0);
     body_.EndAdvance();
     ++frame_;
   }
@@ -103,7 +105,7 @@ std::vector<LinkCut> CutsOf(const std::vector<Crossing>& crossings) {
   return cuts;
 }
 
-void BM_Search(benchmark::State& state) {
+void BM_Search(benchmark::State& state, double swing_m) {
   const double size = 1e-6 * static_cast<double>(state.range(0));
   const Lattice lattice = Fill("liver", size);
   Slice slice(lattice, 2 * size, 0);
@@ -123,12 +125,20 @@ void BM_Search(benchmark::State& state) {
     benchmark::DoNotOptimize(finder.Find(motion, slice.body().motion()).data());
     state.SetIterationTime(ThreadSeconds() - start);
     slice.body().CloseWindow();
-    slice.MoveBody();
+    slice.MoveBody(swing_m);
   }
   state.counters["links"] = static_cast<double>(lattice.links.size());
   state.counters["found"] = static_cast<double>(crossings.size());
 }
-BENCHMARK(BM_Search)->Arg(9000)->Arg(5600)->Arg(4000)->Arg(3000)->Unit(benchmark::kMicrosecond)->UseManualTime();
+BENCHMARK_CAPTURE(BM_Search, swaying, 0)
+    ->Arg(9000)
+    ->Arg(5600)
+    ->Arg(4000)
+    ->Arg(3000)
+    ->Unit(benchmark::kMicrosecond)
+    ->UseManualTime();
+/// Up to 5 mm a frame.
+BENCHMARK_CAPTURE(BM_Search, swinging, 0.005)->Arg(5600)->Arg(3000)->Unit(benchmark::kMicrosecond)->UseManualTime();
 
 /// The limit: one pass over all links with a code per vertex that is already there.
 void BM_ReadEveryLink(benchmark::State& state) {

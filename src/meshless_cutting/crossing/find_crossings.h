@@ -20,10 +20,10 @@ struct Crossing {
 };
 
 /// Searches uncut links near the blade, from the coarse to the fine: groups of blocks, blocks of vertices with their
-/// links, links. Each gets an outcode, six bits that say beyond which sides of the blade's box all of it stays during
-/// the window; a link between two groups or two vertices can reach the box only where their codes have no bit in
-/// common. Bounds of groups and blocks serve for many windows, widened by what particles can have moved since. Buffers
-/// are kept between frames.
+/// links, links. Each gets an outcode, eight bits that say beyond which sides of the blade's reach, a box and a slab,
+/// all of it stays during the window; a link between two groups or two vertices can come within reach only where their
+/// codes have no bit in common. Bounds of groups and blocks serve for many windows: they drift with their group, and
+/// are widened by what its particles can have moved beside that. Buffers are kept between frames.
 class CrossingFinder {
  public:
   CrossingFinder(const Lattice& lattice, const MaterialGraph& graph);
@@ -36,21 +36,30 @@ class CrossingFinder {
   struct Bounds {
     Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), max = -min;
   };
+  /// What the blade sweeps in the frame lies within a box and within a slab: the box alone is wide where the blade goes
+  /// askew to the axes.
+  struct Reach {
+    Bounds box;
+    Eigen::Vector3d normal, abs_normal;  // of the slab, unit or zero, and its absolute values
+    double low = std::numeric_limits<double>::infinity(), high = -low;  // along the normal, m
+  };
   /// Bounds of what follows some particles, as they were in a window.
   struct KeptBounds {
     Bounds bounds;
-    double travel = 0;          // of the object in that window
-    std::uint32_t version = 0;  // of the group or block
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();  // of the group until the end of that window, m
+    double travel = 0;                                // and of the particles beside it, m
+    double overshoot = 0;                             // of all vertices
+    std::uint32_t version = 0;                        // of the group or block
   };
   struct PlacedVertex {
     LatticeMotion::Window window;
     std::uint32_t search = 0;  // the last in which it was evaluated
     std::uint8_t code = 0;
   };
-  Bounds BoundBlade(const BladeMotion& blade);
-  void FindNearGroups(const Bounds& box, const LatticeMotion& object);
-  void SearchBlock(int block, const Bounds& box, const BladeMotion& blade, const LatticeMotion& object);
-  const PlacedVertex& Place(int vertex, const Bounds& box, const LatticeMotion& object);
+  Reach BoundBlade(const BladeMotion& blade, double slack);
+  void FindNearGroups(const Reach& reach, const LatticeMotion& object);
+  void SearchBlock(int block, const Reach& reach, const BladeMotion& blade, const LatticeMotion& object);
+  const PlacedVertex& Place(int vertex, const Reach& reach, const LatticeMotion& object);
   void TestLink(int link, const BladeMotion& blade);
 
   const Lattice* lattice_;

@@ -35,7 +35,8 @@ LatticeMotion::LatticeMotion(const Lattice& lattice, const CutSurface& surface, 
       points_(&points),
       tissue_(&tissue),
       inner_(points, shape, tissue),
-      blocks_(lattice, grid) {
+      blocks_(lattice, grid),
+      kept_of_(lattice.vertices.size(), -1) {
   const auto& [a, b] = lattice.links[0];
   offset_size_ = kOffsetShare * (lattice.vertices[a] - lattice.vertices[b]).norm();
   const int count = static_cast<int>(lattice.vertices.size());
@@ -54,8 +55,7 @@ LatticeMotion::LatticeMotion(const Lattice& lattice, const CutSurface& surface, 
 void LatticeMotion::Place(int vertex) {
   const int s = surface_->VertexOf(vertex);
   const int point = s >= 0 ? drawn_->point(s) : inner_.point(vertex);
-  const double overshoot = s >= 0 ? drawn_->overshoot(s) : inner_.overshoot(vertex);
-  blocks_.Assign(vertex, point, points_->points()[point].cell, overshoot);
+  blocks_.Assign(vertex, point, points_->points()[point].cell, Overshoot(vertex));
 }
 
 void LatticeMotion::SetWindow(const std::vector<Eigen::Vector3d>* particles_t0,
@@ -66,10 +66,7 @@ void LatticeMotion::SetWindow(const std::vector<Eigen::Vector3d>* particles_t0,
   particles_t1_ = particles_t1;
   surface_t0_ = surface_t0;
   surface_t1_ = surface_t1;
-  Eigen::Array3d farthest = Eigen::Array3d::Zero();
-  for (size_t j = 0; j < particles_t1->size(); ++j)
-    farthest = farthest.max(((*particles_t1)[j] - (*particles_t0)[j]).array().abs());
-  travel_ += farthest.maxCoeff();
+  blocks_.AddTravel(*particles_t0, *particles_t1);
 }
 
 void LatticeMotion::KeepStarts(const std::vector<int>& points, const std::vector<Eigen::Vector3d>& particles) {
@@ -80,7 +77,11 @@ void LatticeMotion::KeepStarts(const std::vector<int>& points, const std::vector
       for (int v : blocks_.blocks()[p].vertices)
         if (surface_->VertexOf(v) < 0 && !inner_.IsJoined(v)) lost_.push_back(v);
   std::sort(lost_.begin(), lost_.end());
-  for (int v : lost_) kept_.emplace_back(v, inner_.Position(v, particles));
+  for (int v : lost_) {
+    if (kept_of_[v] >= 0) continue;
+    kept_of_[v] = static_cast<int>(kept_.size());
+    kept_.emplace_back(v, inner_.Position(v, particles));
+  }
 }
 
 void LatticeMotion::Remap(const std::vector<int>& points, const std::vector<int>& redrawn) {
@@ -103,6 +104,7 @@ void LatticeMotion::Remap(const std::vector<int>& points, const std::vector<int>
 }
 
 void LatticeMotion::ForgetStarts() {
+  for (const auto& [vertex, start] : kept_) kept_of_[vertex] = -1;
   kept_.clear();
   blocks_.ForgetAstray();
 }
@@ -112,11 +114,7 @@ LatticeMotion::Window LatticeMotion::At(int vertex) const {
   if (const int s = surface_->VertexOf(vertex); s >= 0) return {(*surface_t0_)[s] + offset, (*surface_t1_)[s] + offset};
   Window window;
   inner_.Positions(vertex, *particles_t0_, *particles_t1_, window.start, window.end);
-  if (!kept_.empty()) {
-    const auto kept =
-        std::lower_bound(kept_.begin(), kept_.end(), vertex, [](const auto& entry, int v) { return entry.first < v; });
-    if (kept != kept_.end() && kept->first == vertex) window.start = kept->second;
-  }
+  if (const int k = kept_of_[vertex]; k >= 0) window.start = kept_[static_cast<size_t>(k)].second;
   window.start += offset;
   window.end += offset;
   return window;

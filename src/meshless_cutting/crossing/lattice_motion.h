@@ -43,12 +43,15 @@ class LatticeMotion {
     Eigen::Vector3d start, end;
   };
   Window At(int vertex) const;
+  /// How far a vertex can be outside the bounds of its particles, as a share of their extent.
+  double Overshoot(int vertex) const {
+    const int s = surface_->VertexOf(vertex);
+    return s >= 0 ? drawn_->overshoot(s) : inner_.overshoot(vertex);
+  }
 
   const MotionBlocks& blocks() const { return blocks_; }
   /// How far vertices can be outside the bounds of their particles beside their overshoot.
   double slack() const { return 4 * offset_size_; }  // m
-  /// Upper bound of the way that any particle has moved along any axis, summed over all windows, this one included, m.
-  double travel() const { return travel_; }
   const std::vector<Eigen::Vector3d>& particles_t0() const { return *particles_t0_; }
   const std::vector<Eigen::Vector3d>& particles_t1() const { return *particles_t1_; }
 
@@ -59,13 +62,13 @@ class LatticeMotion {
   const VertexMapping* drawn_;
   const IntegrationPoints* points_;
   const Tissue* tissue_;
-  double travel_ = 0;
   double offset_size_;                   // m
   std::vector<Eigen::Vector3d> offset_;  // per vertex, m
   VertexMapping inner_;                  // lattice vertices inside the object; those of the skin stay unmapped
   MotionBlocks blocks_;
   std::vector<int> lost_;                              // inner vertices to be mapped anew
-  std::vector<std::pair<int, Eigen::Vector3d>> kept_;  // where they were, sorted by vertex
+  std::vector<std::pair<int, Eigen::Vector3d>> kept_;  // where they were
+  std::vector<int> kept_of_;                           // per vertex, index there, -1: none
   const std::vector<Eigen::Vector3d>*particles_t0_ = nullptr, *particles_t1_ = nullptr;
   const std::vector<Eigen::Vector3d>*surface_t0_ = nullptr, *surface_t1_ = nullptr;
 };

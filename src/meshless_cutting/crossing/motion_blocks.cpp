@@ -55,16 +55,11 @@ void MotionBlocks::Assign(int vertex, int block, int cell, double overshoot) {
 void MotionBlocks::Connect(int vertex) {
   MotionBlock& own = blocks_[block_of_[vertex]];
   ++own.version;
-  MotionGroup& group = groups_[own.group];
-  group.reach_overshoot = std::max(group.reach_overshoot, group.overshoot);
   for (const int* l = lattice_->vertex_links.begin(vertex); l != lattice_->vertex_links.end(vertex); ++l) {
     const auto& [a, b] = lattice_->links[*l];
     MotionBlock& other = blocks_[block_of_[a == vertex ? b : a]];
     if (b == vertex) ++other.version;
     if (own.group == other.group) continue;
-    MotionGroup& far = groups_[other.group];
-    group.reach_overshoot = std::max(group.reach_overshoot, far.overshoot);
-    far.reach_overshoot = std::max(far.reach_overshoot, group.overshoot);
     const auto& [g, h] = std::minmax(own.group, other.group);
     InsertSorted(groups_[g].later_neighbours, h);
   }
@@ -85,6 +80,37 @@ void MotionBlocks::Regroup(const std::vector<int>& blocks, const Tissue& tissue)
     }
     SortUnique(group.particles);
     ++group.version;
+  }
+}
+
+void MotionBlocks::AddTravel(const std::vector<Eigen::Vector3d>& particles_t0,
+                             const std::vector<Eigen::Vector3d>& particles_t1) {
+  way_.resize(particles_t1.size(), Eigen::Array4d::Zero());
+  for (size_t j = 0; j < particles_t1.size(); ++j) way_[j].head<3>() = particles_t1[j] - particles_t0[j];
+  travel_.assign(groups_.size(), 0);
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    MotionGroup& group = groups_[g];
+    if (group.particles.empty()) continue;
+    Eigen::Array4d low = way_[static_cast<size_t>(group.particles[0])], high = low;
+    for (int j : group.particles) {
+      low = low.min(way_[static_cast<size_t>(j)]);
+      high = high.max(way_[static_cast<size_t>(j)]);
+    }
+    travel_[g] = 0.5 * (high - low).head<3>().maxCoeff();
+    group.drift_t0 = group.drift_t1;
+    group.drift_t1 += 0.5 * (low + high).head<3>().matrix();
+  }
+  reach_travel_ = travel_;
+  for (size_t g = 0; g < groups_.size(); ++g)
+    for (int n : groups_[g].later_neighbours) {
+      const MotionGroup &a = groups_[g], &b = groups_[n];
+      const double apart = ((a.drift_t1 - a.drift_t0) - (b.drift_t1 - b.drift_t0)).cwiseAbs().maxCoeff();
+      reach_travel_[g] = std::max(reach_travel_[g], travel_[n] + apart);
+      reach_travel_[n] = std::max(reach_travel_[n], travel_[g] + apart);
+    }
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].travel += travel_[g];
+    groups_[g].reach_travel += reach_travel_[g];
   }
 }
 

@@ -26,8 +26,13 @@ struct MotionGroup {
   std::vector<int> later_neighbours;  // groups of higher index that some link leads to, sorted; never shrinks
   /// A vertex is at most this share of the extent of the particles' bounds outside these bounds, per axis.
   double overshoot = 0;
-  double reach_overshoot = 0;  // the same for all vertices of the links from and to its blocks
-  std::uint32_t version = 0;   // +1 whenever blocks or particles change
+  std::uint32_t version = 0;  // +1 whenever blocks or particles change
+  /// How far it has moved: the middle of the ways of its particles, summed over all windows but the last, and over
+  /// all, m.
+  Eigen::Vector3d drift_t0 = Eigen::Vector3d::Zero(), drift_t1 = Eigen::Vector3d::Zero();
+  /// Upper bounds of the way beside this that any of its particles has moved along any axis, summed over all windows,
+  /// m; and of the ways of those of all vertices of the links from and to its blocks.
+  double travel = 0, reach_travel = 0;
 };
 
 class MotionBlocks {
@@ -40,6 +45,8 @@ class MotionBlocks {
   void Connect(int vertex);
   /// Gathers the particles of the groups of `blocks` anew: their supports changed. Call after every Assign().
   void Regroup(const std::vector<int>& blocks, const Tissue& tissue);
+  /// The particles moved from t0 to t1 in a new window, m.
+  void AddTravel(const std::vector<Eigen::Vector3d>& particles_t0, const std::vector<Eigen::Vector3d>& particles_t1);
   /// The present window of a vertex does not start where its particles were.
   void MarkAstray(int vertex) { astray_.push_back(vertex); }
   void ForgetAstray() { astray_.clear(); }
@@ -59,6 +66,9 @@ class MotionBlocks {
   std::vector<MotionGroup> groups_;
   std::vector<int> astray_;    // vertices
   std::vector<int> outdated_;  // groups with new blocks
+  // In the last window, m.
+  std::vector<Eigen::Array4d> way_;            // per particle; the fourth entry is there for packed instructions alone
+  std::vector<double> travel_, reach_travel_;  // per group
 };
 
 }  // namespace meshless_cutting

@@ -33,6 +33,7 @@ void VertexMapping::Add(const Eigen::Vector3d& X, int anchor) {
   anchor_.push_back(anchor);
   point_.push_back(-1);
   cell_.push_back(-1);
+  overshoot_.push_back(0);
   cut_plane_.emplace_back();
   links_.particles.resize(links_.particles.size() + links_.support_size, 0);
   links_.weights.resize(links_.weights.size() + links_.support_size, 0);
@@ -133,14 +134,11 @@ void VertexMapping::Assign(int v, int point) {
   Refresh(v);
   const int cell = points_->points()[point].cell;
   if (std::exchange(cell_[v], cell) == cell) return;  // the weights are those of the cell
-  shape_->Values(cell, rest_[v], &links_.weights[static_cast<size_t>(v) * static_cast<size_t>(links_.support_size)]);
-}
-
-double VertexMapping::overshoot(int v) const {
   const size_t K = static_cast<size_t>(links_.support_size);
-  double sum = 0;
-  for (size_t k = 0; k < K; ++k) sum += std::max(0.0, -links_.weights[v * K + k]);
-  return sum;
+  double* weights = &links_.weights[v * K];
+  shape_->Values(cell, rest_[v], weights);
+  overshoot_[v] = 0;
+  for (size_t k = 0; k < K; ++k) overshoot_[v] += std::max(0.0, -weights[k]);
 }
 
 Eigen::Vector3d VertexMapping::Position(int v, const std::vector<Eigen::Vector3d>& particles) const {

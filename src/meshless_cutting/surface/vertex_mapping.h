@@ -70,7 +70,7 @@ class VertexMapping {
   const Eigen::Vector3d& rest(int v) const { return rest_[v]; }
   /// How far x_v can be outside the bounding box of its particles, as a share of the box's extent per axis: the sum of
   /// its negative weights. 0: a convex combination.
-  double overshoot(int v) const;
+  double overshoot(int v) const { return overshoot_[v]; }
   const SurfacePoints& links() const { return links_; }
   const MappingStatistics& statistics() const { return statistics_; }
 
@@ -93,6 +93,7 @@ class VertexMapping {
   const Tissue* tissue_;
   std::vector<Eigen::Vector3d> rest_;
   std::vector<int> anchor_, point_, cell_;  // cell_: of the point that a vertex was mapped on last
+  std::vector<double> overshoot_;
   std::vector<CutPlane> cut_plane_;
   std::vector<std::vector<int>> on_point_;
   SurfacePoints links_;
