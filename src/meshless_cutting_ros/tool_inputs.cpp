@@ -23,6 +23,7 @@ std::int64_t Now() { return static_cast<std::int64_t>(ros::Time::now().toNSec())
 
 struct ToolInputs::Box {
   std::deque<PoseSample> poses;
+  std::deque<PoseSample> unstamped;  // their stamp is that of their receipt as yet
   std::deque<EdgeSample> edges;
   std::deque<ButtonSample> buttons;
   std::int64_t newest_tf_ns = -1;
@@ -151,10 +152,8 @@ void ToolInputs::TfChanged() {
 void ToolInputs::Receive(int tool, PoseSample sample) {
   const std::int64_t now = Now();
   ApplyPolicy(tools_[tool], &sample);
-  if (sample.stamp_ns == 0) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    sample.stamp_ns = boxes_[tool].receipt_stamps.Next(now);
-  }
+  const bool stamped = sample.stamp_ns != 0;
+  if (!stamped) sample.stamp_ns = now;
   InputReport& report = *reports_[tool];
   if (check_age_) {
     const double age = 1e-9 * static_cast<double>(now - sample.stamp_ns);
@@ -173,11 +172,12 @@ void ToolInputs::Receive(int tool, PoseSample sample) {
   Box& box = boxes_[tool];
   box.received = ros::SteadyTime::now();
   box.silence_told = false;
-  if (box.poses.size() >= static_cast<std::size_t>(kInputQueue)) {
-    box.poses.pop_front();
+  std::deque<PoseSample>& queue = stamped ? box.poses : box.unstamped;
+  if (queue.size() >= static_cast<std::size_t>(kInputQueue)) {
+    queue.pop_front();
     report.Count(InputFault::kOverflow, std::to_string(kInputQueue) + " samples wait");
   }
-  box.poses.push_back(std::move(sample));
+  queue.push_back(std::move(sample));
 }
 
 void ToolInputs::ReceiveEdge(int tool, const geometry_msgs::PolygonStamped& edge) {
@@ -203,13 +203,19 @@ void ToolInputs::ReceiveButton(int tool, const sensor_msgs::Joy& joy) {
 
 void ToolInputs::HandOver(Session* session) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  const std::int64_t now = Now();
   for (int tool = 0; tool < static_cast<int>(boxes_.size()); ++tool) {
-    for (const PoseSample& sample : boxes_[tool].poses) session->Add(tool, sample);
-    for (EdgeSample& edge : boxes_[tool].edges) session->Add(tool, std::move(edge));
-    for (const ButtonSample& button : boxes_[tool].buttons) session->Add(tool, button);
-    boxes_[tool].buttons.clear();
-    boxes_[tool].poses.clear();
-    boxes_[tool].edges.clear();
+    Box& box = boxes_[tool];
+    for (const PoseSample& sample : box.poses) session->Add(tool, sample);
+    for (std::size_t left = box.receipt_stamps.Settle(now, &box.unstamped); left > 0; --left) {
+      session->Add(tool, box.unstamped.front());
+      box.unstamped.pop_front();
+    }
+    for (EdgeSample& edge : box.edges) session->Add(tool, std::move(edge));
+    for (const ButtonSample& button : box.buttons) session->Add(tool, button);
+    box.buttons.clear();
+    box.poses.clear();
+    box.edges.clear();
   }
 }
 

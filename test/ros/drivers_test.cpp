@@ -47,6 +47,26 @@ TEST_F(DriversTest, MillimetresOwnClockOwnFrameNoOrientation) {
   EXPECT_TRUE(Separate<PoseStamped>(poses, 0.0773, as_omni, 2));
 }
 
+// A machine that stalls in mid-stroke: what it kept back for longer than timeout_s comes at once.
+TEST_F(DriversTest, SamplesThatWereKeptBackCutAllTheSame) {
+  const auto stalls = [](const std::function<void(PoseStamped*)>& change) {
+    return [change, sent = 0](PoseStamped pose) mutable {
+      if (++sent == 50) ros::WallDuration(0.3).sleep();
+      change(&pose);
+      return pose;
+    };
+  };
+  const auto scalpel = nh_.advertise<PoseStamped>("/simulator/scalpel/measured_cp", 1000);
+  EXPECT_TRUE(Separate<PoseStamped>(scalpel, 0.0773, stalls([](PoseStamped*) {}), 2));
+  const auto omni = nh_.advertise<PoseStamped>("/simulator/omni/pose", 1000);
+  const auto unstamped = stalls([](PoseStamped* pose) {
+    pose->header.stamp = ros::Time();
+    pose->pose.position.x *= 1000;
+    pose->pose.position.z *= 1000;
+  });
+  EXPECT_TRUE(Separate<PoseStamped>(omni, 0.0477, unstamped, 3));
+}
+
 TEST_F(DriversTest, TheBladeCutsOnlyWhileItsButtonIsPressed) {
   const auto joy = nh_.advertise<sensor_msgs::Joy>("/simulator/pedal/joy", 10);
   const auto poses = nh_.advertise<PoseStamped>("/simulator/pedal/measured_cp", 1000);

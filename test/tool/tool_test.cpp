@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
+#include <vector>
 
 namespace meshless_cutting {
 namespace {
@@ -137,6 +139,50 @@ TEST(Tool, JudgesSpeedAndSilenceByTheClockOfTheTool) {
   ASSERT_EQ(motion.size(), 2u);
   EXPECT_DOUBLE_EQ(motion[0].points_t1[0][0], 0.04);
   EXPECT_DOUBLE_EQ(motion[1].points_t0[0][0], 0.15);
+}
+
+// Samples that a busy machine kept back longer than timeout_s say, when they come, that the driver was never silent.
+TEST(Tool, ContinuesFromWhereItWasWhenLateSamplesCloseTheGap) {
+  Tool tool(Config());
+  constexpr double kFrame = 0.02, kPeriod = 0.005;
+  std::vector<BladeMotion> frames;
+  int sent = 0;
+  for (int frame = 0; frame < 30; ++frame) {
+    const double t0 = frame * kFrame, t1 = t0 + kFrame;
+    const bool kept_back = frame >= 10 && frame < 20;
+    for (; !kept_back && (sent + 1) * kPeriod <= t1; ++sent)
+      EXPECT_EQ(tool.Add(At((sent + 1) * kPeriod, 0.001 * sent)), SampleVerdict::kAccepted);
+    frames.push_back(tool.Move(t0, t1));
+  }
+  EXPECT_TRUE(frames[17].empty()) << "inactive while nothing comes";
+  std::optional<double> x;
+  for (const BladeMotion& motion : frames)
+    for (const BladeWindow& window : motion) {
+      EXPECT_DOUBLE_EQ(window.points_t0[0][0], x.value_or(0)) << "a part of the path is left out";
+      x = window.points_t1[0][0];
+    }
+  EXPECT_DOUBLE_EQ(x.value(), 0.001 * (sent - 1));
+}
+
+// A driver that is late and whose clock does not rise evenly: what is newer by its own clock is never before.
+TEST(Tool, TakesANewerSampleWhoseSessionTimeFellBehind) {
+  Tool tool(Config());
+  ToolSample first = At(0.010, 0), second = At(0.009, 0.001);
+  first.measured_s = 1;
+  second.measured_s = 1.001;
+  EXPECT_EQ(tool.Add(first), SampleVerdict::kAccepted);
+  EXPECT_EQ(tool.Add(second), SampleVerdict::kAccepted);
+  const BladeMotion motion = tool.Move(0, 0.02);
+  ASSERT_EQ(motion.size(), 2u);
+  EXPECT_DOUBLE_EQ(motion[0].points_t1[0][0], 0.001);
+}
+
+// A driver that stamps when it publishes: a burst is no jump, a jump within a burst is one.
+TEST(Tool, JudgesABurstByTheMeanInterval) {
+  Tool tool(Config());
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(tool.Add(At(0.005 * i, 0.001 * i)), SampleVerdict::kAccepted);
+  for (int i = 50; i < 60; ++i) EXPECT_EQ(tool.Add(At(0.3 + 1e-5 * i, 0.001 * i)), SampleVerdict::kAccepted) << i;
+  EXPECT_EQ(tool.Add(At(0.3 + 60e-5, 0.059 + 0.011)), SampleVerdict::kJump);
 }
 
 TEST(Tool, MovesWithoutCuttingWhileItsBladeIsOff) {

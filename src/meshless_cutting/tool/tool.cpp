@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace meshless_cutting {
+namespace {
+
+constexpr int kLongestAverage = 100;  // samples
+
+}  // namespace
 
 Tool::Tool(const ToolConfig& config) : config_(config), edge_(config.cutting_edge), edge_next_(config.cutting_edge) {
   if (const auto* fixed = std::get_if<FixedPoseSource>(&config_.pose_source)) T_WT_ = fixed->T_WT;
@@ -16,16 +21,21 @@ SampleVerdict Tool::Add(const ToolSample& sample) {
     return SampleVerdict::kNotFinite;
   const double norm = sample.orientation_xyzw.norm();
   if (!(norm > 1e-6)) return SampleVerdict::kZeroQuaternion;
-  if (newest_ && (measured_s < newest_->measured_s || sample.time_s < newest_->time_s))
-    return SampleVerdict::kBackInTime;
+  if (newest_ && measured_s < newest_->measured_s) return SampleVerdict::kBackInTime;
   if (newest_ && measured_s == newest_->measured_s) return SampleVerdict::kDuplicate;
 
-  Queued queued{sample.time_s, measured_s, Eigen::Isometry3d::Identity(), false, sample.blade_on};
+  const double time_s = newest_ ? std::max(sample.time_s, newest_->time_s) : sample.time_s;
+  Queued queued{time_s, measured_s, Eigen::Isometry3d::Identity(), false, sample.blade_on};
   const Eigen::Vector4d q = sample.orientation_xyzw / norm;
   queued.T_WT.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
   queued.T_WT.translation() = sample.position_m;
   if (newest_) {
-    const double allowed = config_.max_speed_m_s * (measured_s - newest_->measured_s);
+    const double interval_s = measured_s - newest_->measured_s;
+    if (interval_s <= config_.timeout_s) {
+      averaged_over_ = std::min(averaged_over_ + 1, kLongestAverage);
+      mean_interval_s_ += (interval_s - mean_interval_s_) / averaged_over_;
+    }
+    const double allowed = config_.max_speed_m_s * std::max(interval_s, mean_interval_s_);
     for (const Eigen::Vector3d& p : edge_)
       if ((queued.T_WT * p - newest_->T_WT * p).norm() > allowed) queued.jump = true;
   }
@@ -70,10 +80,12 @@ BladeMotion Tool::Move(double t0_s, double t1_s) {
     last_measured_s_ = sample.measured_s;
   }
   queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(used));
-  if (!fixed && t1_s - last_sample_s_ > config_.timeout_s) blade_.reset();
   if (fixed && !blade_) blade_ = BladeAt(*T_WT_);
-  // A blade that rests or waits for its next sample still cuts tissue that moves onto it.
-  if (blade_ && T_WT_ && t < 1) extend(1, BladeAt(*T_WT_));
+  // A blade that rests or waits for its next sample still cuts tissue that moves onto it, but not for ever: without
+  // samples it is inactive. It stays where it is all the same: samples that were only kept back on their way, and say
+  // by their own clock that there was no silence, go on from there.
+  const bool silent = !fixed && t1_s - last_sample_s_ > config_.timeout_s;
+  if (blade_ && T_WT_ && t < 1 && !silent) extend(1, BladeAt(*T_WT_));
   return motion;
 }
 

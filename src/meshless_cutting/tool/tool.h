@@ -22,8 +22,9 @@ struct ToolSample {
   bool blade_on = true;  // false: the tool moves, its blade does not cut
 };
 
-/// What became of a sample. Everything but kAccepted and kJump is refused and only counted; a jump re-anchors the
-/// blade.
+/// What became of a sample. Everything but kAccepted and kJump is refused and only counted. A jump is a motion faster
+/// than config.max_speed_m_s, over the time since the last sample or over the mean interval of the last hundred if that
+/// is longer (stamps that are put on late come in bursts; the hand does not move in bursts); it re-anchors the blade.
 enum class SampleVerdict { kAccepted, kNotFinite, kZeroQuaternion, kBackInTime, kDuplicate, kJump };
 inline constexpr int kSampleVerdicts = 6;
 
@@ -36,7 +37,8 @@ class Tool {
   SampleVerdict Add(const ToolSample& sample);
 
   /// The blade's motion in the frame that covers (t0_s, t1_s]; consumes the samples up to t1_s.
-  /// Before the first sample, and when none came for config.timeout_s, the blade is inactive (empty motion).
+  /// Before the first sample, and when none came for config.timeout_s, the blade is inactive (empty motion). It goes on
+  /// from where it was when samples that come late close the gap on the clock of the tool, else anew.
   BladeMotion Move(double t0_s, double t1_s);
 
   /// A blade that bends: replaces the polyline (tool frame, m) from the next frame on. False (and unchanged) when the
@@ -64,6 +66,8 @@ class Tool {
   std::vector<Eigen::Vector3d> edge_next_;  // what edge_ becomes in the next frame
   std::vector<Queued> queue_;
   std::optional<Queued> newest_;           // last accepted sample, for the screening
+  double mean_interval_s_ = 0;             // between samples without a silence between them, over
+  int averaged_over_ = 0;                  // so many
   std::optional<Eigen::Isometry3d> T_WT_;  // at the end of the last frame
   std::optional<std::vector<Eigen::Vector3d>>
       blade_;                   // polyline at the end of the last frame while active, scene frame

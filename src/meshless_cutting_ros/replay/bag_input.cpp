@@ -6,6 +6,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -67,20 +68,33 @@ class Reader {
     }
   }
 
-  std::vector<ToolRecording> Take() { return std::move(tools_); }
+  std::vector<ToolRecording> Take() {
+    for (std::size_t tool = 0; tool < tools_.size(); ++tool) Settle(tool, std::numeric_limits<std::int64_t>::max());
+    return std::move(tools_);
+  }
 
  private:
   struct Last {
     std::int64_t stamp_ns = 0;
     std::int64_t received_ns = 0;
     std::int64_t tf_ns = -1;
+    std::deque<PoseSample> unstamped;  // their stamp is that of their receipt as yet
     ReceiptStamps receipt_stamps;
   };
+
+  void Settle(std::size_t tool, std::int64_t now_ns) {
+    Last& last = last_[tool];
+    for (std::size_t left = last.receipt_stamps.Settle(now_ns, &last.unstamped); left > 0; --left) {
+      tools_[tool].poses.push_back(last.unstamped.front());
+      last.unstamped.pop_front();
+    }
+  }
 
   void AddSample(int tool, PoseSample sample, ros::Time received) {
     const auto received_ns = static_cast<std::int64_t>(received.toNSec());
     Last& last = last_[tool];
-    if (sample.stamp_ns == 0) sample.stamp_ns = last.receipt_stamps.Next(received_ns);
+    const bool stamped = sample.stamp_ns != 0;
+    if (!stamped) sample.stamp_ns = received_ns;
     const bool has_last = last.stamp_ns != 0;
     if (has_last && sample.stamp_ns - last.stamp_ns > received_ns - last.received_ns + kLargestLead_ns) {
       return reports_[tool]->Count(InputFault::kInFuture,
@@ -93,7 +107,12 @@ class Reader {
     ReportOddities(sample, reports_[tool].get());
     last.stamp_ns = sample.stamp_ns;
     last.received_ns = received_ns;
-    tools_[tool].poses.push_back(sample);
+    if (stamped) {
+      tools_[tool].poses.push_back(sample);
+    } else {
+      last.unstamped.push_back(sample);
+      Settle(static_cast<std::size_t>(tool), received_ns);
+    }
   }
 
   void AddButton(int tool, const sensor_msgs::Joy& joy, ros::Time received) {
