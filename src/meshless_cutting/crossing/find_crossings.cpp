@@ -167,16 +167,17 @@ void CrossingFinder::FindNearGroups(const Reach& reach, const LatticeMotion& obj
   }
 }
 
-/// Evaluates the window of a vertex, if that was not done yet, and gives it its code.
-const CrossingFinder::PlacedVertex& CrossingFinder::Place(int vertex, const Reach& reach, const LatticeMotion& object) {
+/// The code of a vertex; evaluates its window, if that was not done yet.
+std::uint8_t CrossingFinder::Place(int vertex, const Reach& reach, const LatticeMotion& object) {
   PlacedVertex& placed = placed_[vertex];
   if (std::exchange(placed.search, search_) != search_) {
-    const auto& [start, end] = placed.window = object.At(vertex);
+    placed.window = static_cast<std::uint32_t>(windows_.size());
+    const auto& [start, end] = windows_.emplace_back(object.At(vertex));
     const double s0 = reach.normal.dot(start), s1 = reach.normal.dot(end);
     placed.code = BoxCode(start.cwiseMin(end), start.cwiseMax(end), reach.box) |
                   SlabCode(std::min(s0, s1), std::max(s0, s1), reach);
   }
-  return placed;
+  return placed.code;
 }
 
 /// Tests the links of a block, unless its bounds say that none can come within reach; brings these up to date if they
@@ -189,9 +190,9 @@ void CrossingFinder::SearchBlock(int b, const Reach& reach, const BladeMotion& b
   if (is_known && CodeOf(kept, group, group.reach_travel, reach) != 0) return;
   for (int p : block.vertices) {
     if (first_link_[p] == first_link_[p + 1]) continue;
-    const std::uint8_t code = Place(p, reach, object).code;
+    const std::uint8_t code = Place(p, reach, object);
     for (int link = first_link_[p]; link < first_link_[p + 1]; ++link)
-      if ((code & Place(lattice_->links[link][1], reach, object).code) == 0 && !graph_->IsCut(link))
+      if ((code & Place(lattice_->links[link][1], reach, object)) == 0 && !graph_->IsCut(link))
         TestLink(link, blade);
   }
   if (is_known && Margin(kept, group.reach_travel) < tight_) return;
@@ -199,7 +200,7 @@ void CrossingFinder::SearchBlock(int b, const Reach& reach, const BladeMotion& b
   double overshoot = 0;
   auto add = [&](int vertex) {
     overshoot = std::max(overshoot, object.Overshoot(vertex));
-    const auto& [start, end] = placed_[vertex].window;
+    const auto& [start, end] = WindowOf(vertex);
     bounds.min = bounds.min.cwiseMin(start.cwiseMin(end));
     bounds.max = bounds.max.cwiseMax(start.cwiseMax(end));
   };
@@ -212,8 +213,7 @@ void CrossingFinder::SearchBlock(int b, const Reach& reach, const BladeMotion& b
 }
 
 void CrossingFinder::TestLink(int link, const BladeMotion& blade) {
-  const LatticeMotion::Window &a = placed_[lattice_->links[link][0]].window,
-                              &b = placed_[lattice_->links[link][1]].window;
+  const LatticeMotion::Window &a = WindowOf(lattice_->links[link][0]), &b = WindowOf(lattice_->links[link][1]);
   const Eigen::Vector3d low = a.start.cwiseMin(a.end).cwiseMin(b.start).cwiseMin(b.end);
   const Eigen::Vector3d high = a.start.cwiseMax(a.end).cwiseMax(b.start).cwiseMax(b.end);
   const Bounds *edge_bounds = edge_bounds_.data(), *stretch_bounds = stretch_bounds_.data();
@@ -258,6 +258,7 @@ const std::vector<Crossing>& CrossingFinder::Find(const BladeMotion& blade, cons
   found_.clear();
   if (blade.empty()) return found_;
   ++search_;
+  windows_.clear();
   const Reach reach = BoundBlade(blade, object.slack());
   FindNearGroups(reach, object);
   const auto& groups = object.blocks().groups();

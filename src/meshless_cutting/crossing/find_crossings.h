@@ -51,15 +51,17 @@ class CrossingFinder {
     double overshoot = 0;                             // of all vertices
     std::uint32_t version = 0;                        // of the group or block
   };
+  /// Small, because those of a search lie scattered among all.
   struct PlacedVertex {
-    LatticeMotion::Window window;
     std::uint32_t search = 0;  // the last in which it was evaluated
+    std::uint32_t window = 0;  // where in windows_
     std::uint8_t code = 0;
   };
   Reach BoundBlade(const BladeMotion& blade, double slack);
   void FindNearGroups(const Reach& reach, const LatticeMotion& object);
   void SearchBlock(int block, const Reach& reach, const BladeMotion& blade, const LatticeMotion& object);
-  const PlacedVertex& Place(int vertex, const Reach& reach, const LatticeMotion& object);
+  std::uint8_t Place(int vertex, const Reach& reach, const LatticeMotion& object);
+  const LatticeMotion::Window& WindowOf(int vertex) const { return windows_[placed_[vertex].window]; }
   void TestLink(int link, const BladeMotion& blade);
 
   const Lattice* lattice_;
@@ -71,7 +73,8 @@ class CrossingFinder {
   std::vector<KeptBounds> group_bounds_, block_bounds_;
   std::vector<std::uint8_t> group_code_, group_near_;
   std::vector<int> first_link_;  // per vertex, one past the last included: links that start there
-  std::vector<PlacedVertex> placed_;
+  std::vector<PlacedVertex> placed_;             // per vertex
+  std::vector<LatticeMotion::Window> windows_;  // of those evaluated in this search
   std::uint32_t search_ = 0;
 };
 

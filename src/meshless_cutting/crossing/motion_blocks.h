@@ -3,7 +3,9 @@
 // near a blade.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "lattice/lattice.h"
@@ -66,9 +68,21 @@ class MotionBlocks {
   std::vector<MotionGroup> groups_;
   std::vector<int> astray_;    // vertices
   std::vector<int> outdated_;  // groups with new blocks
-  // In the last window, m.
-  std::vector<Eigen::Array4d> way_;            // per particle; the fourth entry is there for packed instructions alone
-  std::vector<double> travel_, reach_travel_;  // per group
+  // In the last window, m, in single precision: half to read, the rounding goes to the travel. The fourth entry is there
+  // for packed instructions alone.
+  struct Ways {
+    Eigen::Array4f low = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity()), high = -low;
+    void Add(const Eigen::Array4f& way) {
+      low = low.min(way);
+      high = high.max(way);
+    }
+    void Add(const Ways& other) {
+      low = low.min(other.low);
+      high = high.max(other.high);
+    }
+  };
+  std::vector<Eigen::Array4f> way_;      // per particle
+  std::vector<Ways> ways_, reach_ways_;  // per group: of its particles; of its neighbours' too
 };
 
 }  // namespace meshless_cutting
