@@ -167,17 +167,14 @@ void CrossingFinder::FindNearGroups(const Reach& reach, const LatticeMotion& obj
   }
 }
 
-/// The code of a vertex; evaluates its window, if that was not done yet.
+/// Evaluates the window of a vertex, and its code.
 std::uint8_t CrossingFinder::Place(int vertex, const Reach& reach, const LatticeMotion& object) {
-  PlacedVertex& placed = placed_[vertex];
-  if (std::exchange(placed.search, search_) != search_) {
-    placed.window = static_cast<std::uint32_t>(windows_.size());
-    const auto& [start, end] = windows_.emplace_back(object.At(vertex));
-    const double s0 = reach.normal.dot(start), s1 = reach.normal.dot(end);
-    placed.code = BoxCode(start.cwiseMin(end), start.cwiseMax(end), reach.box) |
-                  SlabCode(std::min(s0, s1), std::max(s0, s1), reach);
-  }
-  return placed.code;
+  const auto& [start, end] = windows_.emplace_back(object.At(vertex));
+  const double s0 = reach.normal.dot(start), s1 = reach.normal.dot(end);
+  const auto code = static_cast<std::uint8_t>(BoxCode(start.cwiseMin(end), start.cwiseMax(end), reach.box) |
+                                              SlabCode(std::min(s0, s1), std::max(s0, s1), reach));
+  placed_[vertex] = {search_, static_cast<std::uint32_t>(windows_.size() - 1), code};
+  return code;
 }
 
 /// Tests the links of a block, unless its bounds say that none can come within reach; brings these up to date if they
@@ -188,12 +185,15 @@ void CrossingFinder::SearchBlock(int b, const Reach& reach, const BladeMotion& b
   const MotionGroup& group = object.blocks().groups()[block.group];
   const bool is_known = kept.version == block.version;
   if (is_known && CodeOf(kept, group, group.reach_travel, reach) != 0) return;
+  const auto code_of = [&](int vertex) {
+    const PlacedVertex& placed = placed_[vertex];
+    return placed.search == search_ ? placed.code : Place(vertex, reach, object);
+  };
   for (int p : block.vertices) {
     if (first_link_[p] == first_link_[p + 1]) continue;
-    const std::uint8_t code = Place(p, reach, object);
+    const std::uint8_t code = code_of(p);
     for (int link = first_link_[p]; link < first_link_[p + 1]; ++link)
-      if ((code & Place(lattice_->links[link][1], reach, object)) == 0 && !graph_->IsCut(link))
-        TestLink(link, blade);
+      if ((code & code_of(lattice_->links[link][1])) == 0 && !graph_->IsCut(link)) TestLink(link, blade);
   }
   if (is_known && Margin(kept, group.reach_travel) < tight_) return;
   Bounds bounds;

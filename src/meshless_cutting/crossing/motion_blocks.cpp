@@ -111,8 +111,8 @@ void MotionBlocks::AddTravel(const std::vector<Eigen::Vector3d>& particles_t0,
                              const std::vector<Eigen::Vector3d>& particles_t1) {
   way_.resize(particles_t1.size());
   for (size_t j = 0; j < particles_t1.size(); ++j) {
-    const Eigen::Vector3f way = (particles_t1[j] - particles_t0[j]).cast<float>();
-    way_[j] = {way[0], way[1], way[2], 0};
+    const Eigen::Vector3d way = particles_t1[j] - particles_t0[j];
+    way_[j] = Eigen::Array4d(way[0], way[1], way[2], 0).cast<float>();
   }
   ways_.assign(groups_.size(), Ways());
   for (size_t g = 0; g < groups_.size(); ++g) ways_[g] = BoundWays<Ways>(groups_[g].particles, way_);
