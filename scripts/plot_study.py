@@ -154,7 +154,7 @@ def swing(rows, folder, header):
 
 
 def cut_frames(rows, folder, header):
-    """Time of the frames that cut by stage: median as bars, 99th percentile and longest as marks."""
+    """Time of the frames that cut by stage: medians as bars, the 99th percentile of the whole as a mark."""
     rows = sorted((r for r in rows if r['problem'].startswith('cut_') and not r['failed']), key=lambda r: (r['problem'], r['particles']))
     figure, axes = plt.subplots(figsize=(6.4, 3.4))
     for n, row in enumerate(rows):
@@ -164,15 +164,18 @@ def cut_frames(rows, folder, header):
         for stage, colour in zip(STAGES, ('#4477aa', '#ee6677', '#228833', '#ccbb44')):
             axes.bar(n, times[stage][0], 0.55, low, color=colour, label=stage if n == 0 else None)
             low += times[stage][0]
-        axes.plot(n, times['total'][1], '_k', markersize=16, linestyle='', label='p99' if n == 0 else None)
-        axes.plot(n, times['total'][2], 'xk', linestyle='', label='longest' if n == 0 else None)
+        axes.vlines(n, low, times['total'][1], color='0.2', linewidth=1)
+        axes.plot(n, times['total'][1], '_', color='0.2', markersize=16, label='whole, 99th percentile' if n == 0 else None)
     axes.axhline(DEADLINE_MS, color='0.35', linestyle='--', linewidth=1)
     axes.annotate('16.7 ms', (1.01, DEADLINE_MS), xycoords=axes.get_yaxis_transform(), fontsize=7.5, color='0.35', ha='left', va='center')
     axes.set(xlabel='particles', ylabel='wall time of a frame that cuts [ms]', xticks=range(len(rows)))
     axes.set_ylim(0, None)
     axes.set_xticklabels([f"{r['problem'][4:]}\n{r['particles']:,.0f}" for r in rows])
     axes.grid(axis='x', visible=False)
-    axes.legend(frameon=False, loc='center left', bbox_to_anchor=(1.01, 0.5))
+    handles, labels = axes.get_legend_handles_labels()
+    order = [labels.index('whole, 99th percentile')] + [labels.index(stage) for stage in reversed(STAGES)]  # as they are stacked
+    axes.legend([handles[i] for i in order], [labels[i] + (', median' if labels[i] in STAGES else '') for i in order],
+                frameon=False, loc='center left', bbox_to_anchor=(1.09, 0.5))
     save(figure, folder, 'cut_frames', header)
 
 
