@@ -97,7 +97,7 @@ picture() {
   start roslaunch -p "$port" meshless_cutting figure.launch "figure:=$figure" player:=false rviz:=false
   start rviz -d "$work/view.rviz"
   for _ in $(seq 120); do
-    rostopic list 2>/dev/null | grep -q '^/simulator/surface/positions' && xwininfo -root -tree 2>/dev/null | grep -q 'RViz' && break
+    [[ "$(rostopic list 2>/dev/null)" == */simulator/surface/positions* && "$(xwininfo -root -tree 2>/dev/null)" == *RViz* ]] && break
     sleep 1
   done
   sleep 6

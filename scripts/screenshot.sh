@@ -30,7 +30,7 @@ roslaunch -p "$port" meshless_cutting liver.launch player:=false "$@" >/tmp/mesh
 launch=$!
 for _ in $(seq 60); do
   sleep 1
-  xwininfo -root -tree 2>/dev/null | grep -q 'RViz' && break
+  [[ "$(xwininfo -root -tree 2>/dev/null)" == *RViz* ]] && break
 done
 sleep 8
 timeout "$((seconds + 20))" rosrun meshless_cutting tool_player _path:="$SOURCE_DIR/launch/liver_strokes.yaml" \

@@ -10,5 +10,5 @@ say "Testing"
 cd "$BUILD_DIR"
 # Tests with a live ROS graph keep real time: one that a machine made late by standing still gets a second chance.
 repeat=()
-if ctest --help | grep -q -- --repeat\ ; then repeat=(--repeat until-pass:2); fi
+if [[ "$(ctest --help)" == *"--repeat "* ]]; then repeat=(--repeat until-pass:2); fi
 exec ctest --no-tests=error --output-on-failure "${repeat[@]}" -j"$(nproc)" "$@"

@@ -11,13 +11,13 @@ unset ROS_ROOT CMAKE_PREFIX_PATH ROSLISP_PACKAGE_DIRECTORIES LD_LIBRARY_PATH PKG
 # What setup.sh of the prefix would set, were it installed where it was configured for.
 export CMAKE_PREFIX_PATH="$root${MESHLESS_CUTTING_ROS_PREFIX:+:$MESHLESS_CUTTING_ROS_PREFIX}"
 export ROS_PACKAGE_PATH="$root/share${MESHLESS_CUTTING_ROS_PREFIX:+:$MESHLESS_CUTTING_ROS_PREFIX/share}"
-python_path="$(find "$root/lib" -type d -path '*-packages/meshless_cutting' -printf '%h\n' | head -n 1)"
+python_path="$(find "$root/lib" -type d -path '*-packages/meshless_cutting' -printf '%h\n' -quit)"
 export PYTHONPATH="$python_path${MESHLESS_CUTTING_ROS_PREFIX:+:$MESHLESS_CUTTING_ROS_PREFIX/lib/python3/dist-packages}"
 cd "$folder"
 
 [ "$(rospack find meshless_cutting)" = "$root/share/meshless_cutting" ] || { echo "the package is not found"; exit 1; }
 for kind in rviz nodelet; do
-  rospack plugins --attrib=plugin "$kind" | grep -q "$root/share/meshless_cutting/" || { echo "no $kind plugin"; exit 1; }
+  [[ "$(rospack plugins --attrib=plugin "$kind")" == *"$root/share/meshless_cutting/"* ]] || { echo "no $kind plugin"; exit 1; }
 done
 
 port=$((20000 + $$ % 20000))
