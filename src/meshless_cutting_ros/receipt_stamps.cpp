@@ -19,16 +19,19 @@ std::size_t ReceiptStamps::Settle(std::int64_t now_ns, std::deque<PoseSample>* s
     const std::int64_t received_ns = begin->stamp_ns;
     if (received_ns < last_stamp_ns_ - kClockBack_ns) *this = ReceiptStamps();
     const std::int64_t late_ns = received_ns - last_stamp_ns_ - static_cast<std::int64_t>(period_ns_);
-    const bool has_period = averaged_over_ > 0;
+    const bool is_late = averaged_over_ > 0 && late_ns > 0;  // without a period nothing is
     Samples end = begin + 1;
-    if (has_period && late_ns > kLate_ns) {
+    if (is_late && late_ns > kLate_ns) {
       if (received_ns + kLate_ns > now_ns) break;
-      end = std::find_if(end, samples->end(), [&](const PoseSample& sample) { return sample.stamp_ns > received_ns + kLate_ns; });
-    } else if (has_period && late_ns > 0) {
-      const bool in_burst = static_cast<double>(received_ns - last_received_ns_) < 0.5 * period_ns_;
-      begin->stamp_ns -= in_burst ? late_ns : static_cast<std::int64_t>((1 - kShareCaughtUp) * static_cast<double>(late_ns));
+      end = std::find_if(end, samples->end(),
+                         [&](const PoseSample& sample) { return sample.stamp_ns > received_ns + kLate_ns; });
     }
-    const std::int64_t newest_ns = end - begin > 1 ? (end - 1)->stamp_ns : received_ns;
+    const std::int64_t newest_ns = (end - 1)->stamp_ns;
+    if (is_late && late_ns <= kLate_ns) {
+      const bool in_burst = static_cast<double>(received_ns - last_received_ns_) < 0.5 * period_ns_;
+      const double excused = in_burst ? 1 : 1 - kShareCaughtUp;
+      begin->stamp_ns -= static_cast<std::int64_t>(excused * static_cast<double>(late_ns));
+    }
     Spread(begin, end);
     UpdatePeriod(newest_ns, end - begin);
     begin = end;

@@ -16,8 +16,8 @@ namespace meshless_cutting {
 /// later than the receipt (but by the nanosecond that parts two samples received at the same one).
 class ReceiptStamps {
  public:
-  /// `samples` stand in the order of their receipt, whose time is their stamp. Stamps those that at `now_ns` need wait no
-  /// longer; returns how many they are: the first ones.
+  /// `samples` stand in the order of their receipt, whose time is their stamp. Stamps those that at `now_ns` need wait
+  /// no longer; returns how many they are: the first ones.
   std::size_t Settle(std::int64_t now_ns, std::deque<PoseSample>* samples);
 
  private:
@@ -27,7 +27,7 @@ class ReceiptStamps {
 
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t last_received_ns_ = 0;
-  double period_ns_ = 0;             // of the driver, averaged over
+  double period_ns_ = 0;              // of the driver, averaged over
   std::ptrdiff_t averaged_over_ = 0;  // so many of the last samples
 };
 

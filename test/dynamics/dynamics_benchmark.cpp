@@ -129,7 +129,7 @@ void StepInEvaluations(benchmark::State& state) {
 }
 
 /// The same swing with and without each optional part: 0 none, 1 gravity, 2 damping by mass, 3 by stiffness, 4 an
-/// obstacle far away, 5 none and at rest, asleep.
+/// obstacle far away, 5 none and at rest, asleep, 6 a Prony branch, 7 dead loads.
 void Part(benchmark::State& state) {
   const int part = static_cast<int>(state.range(0));
   const BoxTissueConfig cube = Cube(14);
@@ -143,7 +143,12 @@ void Part(benchmark::State& state) {
   if (part == 4) {
     config.obstacles.push_back({PlaneObstacle{Eigen::Vector3d(0, 0, -100), Eigen::Vector3d::UnitZ()}, 0.5});
   }
+  if (part == 6) config.material.prony = {{0.5, 0.1}};
   Dynamics dynamics(config, tissue);
+  if (part == 7) {
+    const Eigen::Vector3d load(0, 0, -0.01 / tissue.particle_count());
+    dynamics.SetForces(std::vector<Eigen::Vector3d>(static_cast<size_t>(tissue.particle_count()), load));
+  }
   TissueState tissue_state = RestState(tissue);
   for (int j = 0; j < tissue.particle_count() && part != 5; ++j) {
     if (!tissue.particle_fixed[j]) tissue_state.velocity[j].z() = -0.5 * tissue.particle_rest[j].x() / 0.091;
@@ -162,7 +167,7 @@ BENCHMARK(Force)->ArgsProduct({{10, 15, 22, 31, 46}, {2}})->UseRealTime()->Compl
 BENCHMARK(Product)->ArgsProduct({{10, 15, 22}, {1, 2}})->UseRealTime();
 BENCHMARK(TissueChanged)->Arg(10)->Arg(15)->Arg(22)->Unit(benchmark::kMillisecond);
 BENCHMARK(StepInEvaluations)->Arg(9)->Arg(14)->Arg(21)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(Part)->DenseRange(0, 5)->Unit(benchmark::kMillisecond)->Iterations(120);
+BENCHMARK(Part)->DenseRange(0, 7)->Unit(benchmark::kMillisecond)->Iterations(120);
 BENCHMARK(Step)
     ->ArgsProduct({{9, 14, 21}, {1, 2}, {0, 1}})
     ->Unit(benchmark::kMillisecond)

@@ -72,8 +72,8 @@ class CrossingFinder {
   std::vector<Bounds> window_bounds_, stretch_bounds_, edge_bounds_;
   std::vector<KeptBounds> group_bounds_, block_bounds_;
   std::vector<std::uint8_t> group_code_, group_near_;
-  std::vector<int> first_link_;  // per vertex, one past the last included: links that start there
-  std::vector<PlacedVertex> placed_;             // per vertex
+  std::vector<int> first_link_;                 // per vertex, one past the last included: links that start there
+  std::vector<PlacedVertex> placed_;            // per vertex
   std::vector<LatticeMotion::Window> windows_;  // of those evaluated in this search
   std::uint32_t search_ = 0;
 };

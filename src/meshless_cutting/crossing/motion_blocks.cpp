@@ -125,7 +125,8 @@ void MotionBlocks::AddTravel(const std::vector<Eigen::Vector3d>& particles_t0,
   for (size_t g = 0; g < groups_.size(); ++g) {
     MotionGroup& group = groups_[g];
     if (group.particles.empty()) continue;
-    const Eigen::Array3d middle = 0.5 * (ways_[g].low.head<3>().cast<double>() + ways_[g].high.head<3>().cast<double>());
+    const Eigen::Array3d middle =
+        0.5 * (ways_[g].low.head<3>().cast<double>() + ways_[g].high.head<3>().cast<double>());
     group.drift_t0 = group.drift_t1;
     group.drift_t1 += middle.matrix();
     group.travel += Deviation(ways_[g], middle);

@@ -68,8 +68,8 @@ class MotionBlocks {
   std::vector<MotionGroup> groups_;
   std::vector<int> astray_;    // vertices
   std::vector<int> outdated_;  // groups with new blocks
-  // In the last window, m, in single precision: half to read, the rounding goes to the travel. The fourth entry is there
-  // for packed instructions alone.
+  // In the last window, m, in single precision: half to read, the rounding goes to the travel. The fourth entry is
+  // there for packed instructions alone.
   struct Ways {
     Eigen::Array4f low = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity()), high = -low;
     void Add(const Eigen::Array4f& way) {
