@@ -30,10 +30,14 @@ struct Loop {
         pool(threads),
         points(kSoft, pool),
         x(tissue.particle_count()),
-        y(tissue.particle_count()) {
+        y(tissue.particle_count()),
+        p(tissue.particle_count()) {
     points.TissueChanged(tissue);
     points.Resize(tangent);
-    for (int j = 0; j < tissue.particle_count(); ++j) x[j] = Vector4::From(1.01 * tissue.particle_rest[j]);
+    for (int j = 0; j < tissue.particle_count(); ++j) {
+      x[j] = Vector4::From(1.01 * tissue.particle_rest[j]);
+      p[j] = Round(x[j]);
+    }
     points.Linearise(x, true, tangent);
   }
   void Report(benchmark::State& state) const {
@@ -48,7 +52,8 @@ struct Loop {
   ThreadPool pool;
   ElasticPoints points;
   Field x, y;
-  PointTangent tangent;
+  SingleField p;
+  SinglePointTangent tangent;
 };
 
 void Force(benchmark::State& state) {
@@ -59,7 +64,7 @@ void Force(benchmark::State& state) {
 
 void Product(benchmark::State& state) {
   Loop loop(state);
-  for (auto _ : state) loop.points.AddProduct(loop.tangent, 1, loop.x, loop.y);
+  for (auto _ : state) loop.points.ProductInSlots(loop.tangent, loop.p);
   loop.Report(state);
 }
 

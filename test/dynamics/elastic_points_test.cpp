@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -201,6 +203,44 @@ TEST_P(ElasticPointsTest, ProductIsSymmetricPositiveAndMatchesItsDiagonalAndItsC
   }
 }
 
+TEST_P(ElasticPointsTest, ProductInSinglePrecisionDiffersByRounding) {
+  for (MaterialModel model : kModels) {
+    ElasticPoints points({model, 1e4, 0.45, 1000}, pool_);
+    points.TissueChanged(tissue_);
+    const Field x = Sum(Positions(Eigen::Matrix3d::Identity()), Random(1), 1e-3), p = Random(1);
+    PointTangent tangent;
+    SinglePointTangent single_tangent;
+    points.Resize(tangent);
+    points.Resize(single_tangent);
+    points.Linearise(x, true, tangent);
+    points.Linearise(x, true, single_tangent);
+    Field q = Zero();
+    points.AddProduct(tangent, 2, p, q);
+    const int count = static_cast<int>(x.size());
+    SingleField single_p(count), single_q(count);
+    std::transform(p.begin(), p.end(), single_p.begin(), Round);
+    const std::vector<double> free(count, 1), inertia(count, 3);
+    points.ProductInSlots(single_tangent, single_p);
+    double size = 0, difference = 0, dot = 0;
+    for (int c = 0; c < ChunkCount(count, kParticlesPerChunk); ++c) {
+      dot += GatherProduct(ParticleRange(c, count), points.single_slot_sums(), 2, free.data(), inertia.data(),
+                           single_p.data(), single_q.data());
+    }
+    for (int j = 0; j < count; ++j) {
+      const Vector4 expected = q[j] + 3 * p[j], error = expected - Widen(single_q[j]);
+      size += Dot(expected, expected);
+      difference += Dot(error, error);
+    }
+    EXPECT_LT(std::sqrt(difference), 1e-6 * std::sqrt(size));
+    EXPECT_NEAR(dot, Inner(p, Sum(q, p, 3)), 1e-6 * dot);
+
+    BlockField blocks(count), single_blocks(count);
+    points.AddDiagonal(tangent, 1, blocks);
+    points.AddDiagonal(single_tangent, 1, single_blocks);
+    for (int j = 0; j < count; ++j) EXPECT_NEAR(blocks[j].yy, single_blocks[j].yy, 1e-6 * blocks[j].yy);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(AllShapes, ElasticPointsTest,
                          testing::Values(SupportShape::kBoxCentre, SupportShape::kBox, SupportShape::kGeneral));
 
@@ -223,6 +263,7 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
     }
     for (int model = 0; model < 4; ++model) {
       Field first;
+      SingleField first_single;
       double first_energy = 0;
       for (const PointKernelTable* table : tables) {
         const PointKernels& kernels = (*table)[model][shape];
@@ -240,10 +281,22 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
         kernels.linearise(arguments);
         arguments.slots = slots.data() + groups.slot_count;
         kernels.product(arguments);
+        const Field d(x.rbegin(), x.rend());
+        SingleField single_d(d.size()), single_slots(groups.slot_count);
+        std::transform(d.begin(), d.end(), single_d.begin(), Round);
+        AlignedVector<float> single_tangent(tangent.size());
+        arguments.tangent = nullptr;
+        arguments.single_tangent = single_tangent.data();
+        arguments.single_field = single_d.data();
+        arguments.single_slots = single_slots.data();
+        kernels.linearise(arguments);
+        kernels.single_product(arguments);
         if (first.empty()) {
           first = slots;
+          first_single = single_slots;
           first_energy = energy;
         }
+        EXPECT_EQ(std::memcmp(single_slots.data(), first_single.data(), groups.slot_count * sizeof(SingleVector4)), 0);
         EXPECT_EQ(energy, first_energy);
         EXPECT_EQ(std::memcmp(slots.data(), first.data(), 2 * groups.slot_count * sizeof(Vector4)), 0);
       }

@@ -17,12 +17,16 @@ TEST(RandomSessions, MotionStaysPhysical) {
 TEST(RandomSessions, ASessionThatGetsStuckComesBack) {
   // In 201 and 225 a large piece hangs on a strand: it does not tear, but is drawn out until no step is found. Without a
   // last resort the rest of the session stood still.
-  for (std::uint64_t seed : {201, 209, 225}) {
+  for (std::uint64_t seed : {201, 225}) {
     SessionCounts counts;
     SearchSession(seed, 480, counts, true);
     EXPECT_GT(counts.given_up, 0) << "seed " << seed;
     EXPECT_LT(counts.given_up, 3) << "seed " << seed;  // in a row
   }
+  // This one gets through.
+  SessionCounts counts;
+  SearchSession(209, 480, counts, true);
+  EXPECT_EQ(counts.given_up, 0);
 }
 
 }  // namespace

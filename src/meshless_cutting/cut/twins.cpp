@@ -1,7 +1,11 @@
 #include "cut/twins.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <utility>
+
+#include "tissue/space_filling_curve.h"
 
 namespace meshless_cutting {
 namespace {
@@ -149,15 +153,18 @@ const std::vector<int>& Twins::Update(const std::vector<int>& changed_points, Ti
                                       std::vector<int>& source) {
   relinked_ = changed_points;
   source.clear();
-  std::vector<int> nodes;
+  std::vector<std::pair<std::uint64_t, int>> nodes;  // along the curve that the solver's loops go, too
   for (int p : changed_points) {
     FillPoint(p, tissue);
     const Eigen::Vector3i cell = grid_->CellCoordinates(points_->points()[p].cell);
-    for (int k = 0; k < tissue.support_size; ++k) nodes.push_back(grid_->NodeIndex(cell + shape_->offset(k)));
+    for (int k = 0; k < tissue.support_size; ++k) {
+      const Eigen::Vector3i node = cell + shape_->offset(k);
+      nodes.emplace_back(MortonCode(node - grid_->first_node()), grid_->NodeIndex(node));
+    }
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  for (int node : nodes) SplitNode(node, tissue, source);
+  for (const auto& [place, node] : nodes) SplitNode(node, tissue, source);
   LumpMass(tissue);
   std::sort(relinked_.begin(), relinked_.end());
   relinked_.erase(std::unique(relinked_.begin(), relinked_.end()), relinked_.end());

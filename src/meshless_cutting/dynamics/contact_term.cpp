@@ -153,7 +153,7 @@ void ContactTerm::Linearise(const Field& y) {
   }
 }
 
-bool ContactTerm::AddProduct(const Field& p, Field& q) {
+void ContactTerm::AddProduct(const Field& p, Field& q) {
   const int K = skin_->support_size;
   for (std::size_t n = 0; n < active_.size(); ++n) {
     const std::size_t first = static_cast<std::size_t>(candidates_[active_[n]].vertex) * K;
@@ -164,7 +164,6 @@ bool ContactTerm::AddProduct(const Field& p, Field& q) {
     const Vector4 f = Vector4::From(active_tangent_[n] * sum.vector());
     for (int k = 0; k < K; ++k) q[particles[k]] += weights[k] * f;
   }
-  return !active_.empty();
 }
 
 void ContactTerm::AddDiagonal(BlockField& blocks) {

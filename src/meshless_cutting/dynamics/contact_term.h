@@ -37,7 +37,8 @@ class ContactTerm : public ForceTerm {
   void BeginStep(const StageMotion& motion) override;
   double Evaluate(const Field& y, Field& gradient) override;
   void Linearise(const Field& y) override;
-  bool AddProduct(const Field& p, Field& q) override;
+  bool HasTangent() const override { return !active_.empty(); }
+  void AddProduct(const Field& p, Field& q) override;
   void AddDiagonal(BlockField& blocks) override;
   void AddCoarse(CoarseMatrix& matrix) override;
   void EndStep(const Field& y) override;

@@ -1,6 +1,7 @@
 #include "dynamics/elastic_points.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "dynamics/coarse_point.h"
 #include "dynamics/field_loops.h"
@@ -25,28 +26,44 @@ void ElasticPoints::TissueChanged(const Tissue& tissue) {
   particles_ = tissue.particle_count();
   chunk_energy_.resize(groups_.chunks.size());
   slots_.resize(std::size_t{2} * groups_.slot_count);  // the diagonal takes two
+  single_slots_.resize(groups_.slot_count);
+  slots_[groups_.slot_count - 1] = slots_.back() = Vector4();
+  single_slots_.back() = SingleVector4();
 }
 
-KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent) {
+KernelArguments ElasticPoints::Arguments(const PointChunk& chunk) {
   KernelArguments arguments;
   arguments.group = &groups_.groups[chunk.group];
   arguments.chunk = chunk;
   arguments.lame = lame_[arguments.group->material];
-  arguments.field = field.data();
   arguments.slots = slots_.data();
+  arguments.single_slots = single_slots_.data();
   arguments.slot_count = groups_.slot_count;
-  // Only Linearise writes to it, and its caller's is not const.
-  if (tangent != nullptr) arguments.tangent = const_cast<double*>(tangent->groups[chunk.group].data());
   return arguments;
 }
 
-void ElasticPoints::Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const {
-  GatherSlots(ParticleRange(chunk, particles_), buffer, groups_.slot_begin.data(), groups_.slots.data(), factor, to);
+template <class Tangent>
+KernelArguments ElasticPoints::Arguments(const PointChunk& chunk, const Tangent& tangent) {
+  KernelArguments arguments = Arguments(chunk);
+  // Only Linearise writes to it, and its caller's is not const.
+  auto* numbers = const_cast<Tangent&>(tangent).groups[chunk.group].data();
+  if constexpr (std::is_same_v<Tangent, PointTangent>) {
+    arguments.tangent = numbers;
+  } else {
+    arguments.single_tangent = numbers;
+  }
+  return arguments;
+}
+
+void ElasticPoints::Gather(int chunk, Vector4* buffer, double factor, Vector4* to) const {
+  GatherSlots(ParticleRange(chunk, particles_), {buffer, groups_}, factor, to);
 }
 
 double ElasticPoints::EvaluateInSlots(const Field& x) {
   pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
-    chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(Arguments(groups_.chunks[c], x, nullptr));
+    KernelArguments arguments = Arguments(groups_.chunks[c]);
+    arguments.field = x.data();
+    chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(arguments);
   });
   double energy = 0;
   for (double e : chunk_energy_) energy += e;
@@ -60,24 +77,38 @@ double ElasticPoints::Evaluate(const Field& x, Field& gradient) {
   return energy;
 }
 
-void ElasticPoints::Resize(PointTangent& tangent) const {
+template <class Tangent>
+void ElasticPoints::Resize(Tangent& tangent) const {
   tangent.groups.resize(groups_.groups.size());
   for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
     tangent.groups[g].resize(static_cast<std::size_t>(groups_.groups[g].batches) * kernels_[g].tangent_size * kLanes);
   }
 }
 
-void ElasticPoints::Linearise(const Field& x, bool filtered, PointTangent& tangent) {
+template <class Tangent>
+void ElasticPoints::Linearise(const Field& x, bool filtered, Tangent& tangent) {
   pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
-    KernelArguments arguments = Arguments(groups_.chunks[c], x, &tangent);
+    KernelArguments arguments = Arguments(groups_.chunks[c], tangent);
+    arguments.field = x.data();
     arguments.filtered = filtered;
     kernels_[groups_.chunks[c].group].linearise(arguments);
   });
 }
 
 void ElasticPoints::ProductInSlots(const PointTangent& tangent, const Field& p) {
-  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
-                [&](int c) { kernels_[groups_.chunks[c].group].product(Arguments(groups_.chunks[c], p, &tangent)); });
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    KernelArguments arguments = Arguments(groups_.chunks[c], tangent);
+    arguments.field = p.data();
+    kernels_[groups_.chunks[c].group].product(arguments);
+  });
+}
+
+void ElasticPoints::ProductInSlots(const SinglePointTangent& tangent, const SingleField& p) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    KernelArguments arguments = Arguments(groups_.chunks[c], tangent);
+    arguments.single_field = p.data();
+    kernels_[groups_.chunks[c].group].single_product(arguments);
+  });
 }
 
 void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q) {
@@ -86,11 +117,10 @@ void ElasticPoints::AddProduct(const PointTangent& tangent, double factor, const
                 [&](int c) { Gather(c, slots_.data(), factor, &q[c * kParticlesPerChunk]); });
 }
 
-void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, BlockField& blocks) {
-  static const Field kNone;
-  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
-    kernels_[groups_.chunks[c].group].diagonal(Arguments(groups_.chunks[c], kNone, &tangent));
-  });
+template <class Tangent>
+void ElasticPoints::AddDiagonal(const Tangent& tangent, double factor, BlockField& blocks) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()),
+                [&](int c) { kernels_[groups_.chunks[c].group].diagonal(Arguments(groups_.chunks[c], tangent)); });
   pool_.ForEach(ChunkCount(particles_, kParticlesPerChunk), [&](int c) {
     Vector4 diagonal[kParticlesPerChunk], off_diagonal[kParticlesPerChunk];
     const ParticleRange range(c, particles_);
@@ -108,16 +138,25 @@ void ElasticPoints::AddDiagonal(const PointTangent& tangent, double factor, Bloc
   });
 }
 
-void ElasticPoints::AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix) {
-  static const Field kNone;
+template <class Tangent>
+void ElasticPoints::AddCoarse(const Tangent& tangent, double factor, CoarseMatrix& matrix) {
   pool_.ForEach(matrix.aggregates().count(), [&](int a) {
     for (int n = matrix.points_begin(a); n < matrix.points_begin(a + 1); ++n) {
       const PointPlace& place = groups_.places[matrix.points()[n]];
       PointChunk group_only{};
       group_only.group = place.group;
-      AddCoarseOfPoint(kernels_[place.group], Arguments(group_only, kNone, &tangent), place, factor, a, matrix);
+      AddCoarseOfPoint(kernels_[place.group], Arguments(group_only, tangent), place, factor, a, matrix);
     }
   });
 }
+
+template void ElasticPoints::Resize(PointTangent&) const;
+template void ElasticPoints::Resize(SinglePointTangent&) const;
+template void ElasticPoints::Linearise(const Field&, bool, PointTangent&);
+template void ElasticPoints::Linearise(const Field&, bool, SinglePointTangent&);
+template void ElasticPoints::AddDiagonal(const PointTangent&, double, BlockField&);
+template void ElasticPoints::AddDiagonal(const SinglePointTangent&, double, BlockField&);
+template void ElasticPoints::AddCoarse(const PointTangent&, double, CoarseMatrix&);
+template void ElasticPoints::AddCoarse(const SinglePointTangent&, double, CoarseMatrix&);
 
 }  // namespace meshless_cutting

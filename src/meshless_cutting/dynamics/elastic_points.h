@@ -13,9 +13,13 @@
 namespace meshless_cutting {
 
 /// The tangent at some state, per group of points.
-struct PointTangent {
-  std::vector<AlignedVector<double>> groups;
+template <class Number>
+struct BasicPointTangent {
+  std::vector<AlignedVector<Number>> groups;
 };
+using PointTangent = BasicPointTangent<double>;
+/// Half the size, for the linear solver.
+using SinglePointTangent = BasicPointTangent<float>;
 
 class ElasticPoints {
  public:
@@ -31,19 +35,26 @@ class ElasticPoints {
   double EvaluateInSlots(const Field& x);
   /// Leaves tangent p in the slots.
   void ProductInSlots(const PointTangent& tangent, const Field& p);
-  SlotSums slot_sums() const { return {slots_.data(), groups_.slot_begin.data(), groups_.slots.data()}; }
+  SlotSums slot_sums() { return {slots_.data(), groups_}; }
+  /// In those of single precision.
+  void ProductInSlots(const SinglePointTangent& tangent, const SingleField& p);
+  SingleSlotSums single_slot_sums() { return {single_slots_.data(), groups_}; }
 
   /// Strain energy and stabilisation, J; adds its gradient, N.
   double Evaluate(const Field& x, Field& gradient);
   /// Sizes a tangent for the tissue as it is; before Linearise.
-  void Resize(PointTangent& tangent) const;
+  template <class Tangent>
+  void Resize(Tangent& tangent) const;
   /// filtered: made positive semidefinite.
-  void Linearise(const Field& x, bool filtered, PointTangent& tangent);
+  template <class Tangent>
+  void Linearise(const Field& x, bool filtered, Tangent& tangent);
   /// q += factor tangent p.
   void AddProduct(const PointTangent& tangent, double factor, const Field& p, Field& q);
-  void AddDiagonal(const PointTangent& tangent, double factor, BlockField& blocks);
+  template <class Tangent>
+  void AddDiagonal(const Tangent& tangent, double factor, BlockField& blocks);
 
-  void AddCoarse(const PointTangent& tangent, double factor, CoarseMatrix& matrix);
+  template <class Tangent>
+  void AddCoarse(const Tangent& tangent, double factor, CoarseMatrix& matrix);
 
   const PointGroups& groups() const { return groups_; }
   ThreadPool& pool() { return pool_; }
@@ -51,10 +62,12 @@ class ElasticPoints {
   const LameConstants& lame() const { return stiffest_; }
 
  private:
-  KernelArguments Arguments(const PointChunk& chunk, const Field& field, const PointTangent* tangent);
+  KernelArguments Arguments(const PointChunk& chunk);
+  template <class Tangent>
+  KernelArguments Arguments(const PointChunk& chunk, const Tangent& tangent);
 
   /// to[n] += factor times the slots of the n-th particle of a chunk.
-  void Gather(int chunk, const Vector4* buffer, double factor, Vector4* to) const;
+  void Gather(int chunk, Vector4* buffer, double factor, Vector4* to) const;
 
   ThreadPool& pool_;
   std::vector<LameConstants> lame_;  // per material
@@ -64,6 +77,7 @@ class ElasticPoints {
   PointGroups groups_;
   std::vector<double> chunk_energy_;
   Field slots_;
+  SingleField single_slots_;
   int particles_ = 0;
 };
 

@@ -19,15 +19,16 @@ class ElasticTerm {
   void Linearise(const Field& y, bool filtered) { points_.Linearise(y, filtered, tangent_); }
   /// Energy, J, and tangent times p without the factor: sums for the particles are left in the slots.
   double EvaluateInSlots(const Field& y) { return points_.EvaluateInSlots(y); }
-  void ProductInSlots(const Field& p) { points_.ProductInSlots(tangent_, p); }
-  SlotSums slot_sums() const { return points_.slot_sums(); }
+  SlotSums slot_sums() { return points_.slot_sums(); }
+  void ProductInSlots(const SingleField& p) { points_.ProductInSlots(tangent_, p); }
+  SingleSlotSums single_slot_sums() { return points_.single_slot_sums(); }
   void AddDiagonal(BlockField& blocks) { points_.AddDiagonal(tangent_, factor_, blocks); }
   void AddCoarse(CoarseMatrix& matrix) { points_.AddCoarse(tangent_, factor_, matrix); }
 
  private:
   ElasticPoints& points_;
   double factor_ = 1;
-  PointTangent tangent_;
+  SinglePointTangent tangent_;
 };
 
 }  // namespace meshless_cutting

@@ -9,24 +9,35 @@
 namespace meshless_cutting {
 
 /// Three components and one that is always zero, so that a particle is one aligned load.
-struct alignas(32) Vector4 {
-  double x = 0, y = 0, z = 0, w = 0;
+template <class Number>
+struct alignas(4 * sizeof(Number)) BasicVector4 {
+  Number x = 0, y = 0, z = 0, w = 0;
 
   Eigen::Vector3d vector() const { return {x, y, z}; }
-  static Vector4 From(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z(), 0}; }
+  static BasicVector4 From(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z(), 0}; }
 
-  Vector4& operator+=(const Vector4& b) { return *this = *this + b; }
-  friend Vector4 operator+(const Vector4& a, const Vector4& b) {
+  BasicVector4& operator+=(const BasicVector4& b) { return *this = *this + b; }
+  friend BasicVector4 operator+(const BasicVector4& a, const BasicVector4& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
   }
-  friend Vector4 operator-(const Vector4& a, const Vector4& b) {
+  friend BasicVector4 operator-(const BasicVector4& a, const BasicVector4& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
   }
-  friend Vector4 operator*(double s, const Vector4& a) { return {s * a.x, s * a.y, s * a.z, s * a.w}; }
-  friend Vector4 Multiply(const Vector4& a, const Vector4& b) { return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w}; }
-  friend double Sum(const Vector4& a) { return (a.x + a.y) + (a.z + a.w); }
-  friend double Dot(const Vector4& a, const Vector4& b) { return Sum(Multiply(a, b)); }
+  friend BasicVector4 operator*(Number s, const BasicVector4& a) { return {s * a.x, s * a.y, s * a.z, s * a.w}; }
+  friend BasicVector4 Multiply(const BasicVector4& a, const BasicVector4& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w};
+  }
+  friend Number Sum(const BasicVector4& a) { return (a.x + a.y) + (a.z + a.w); }
+  friend Number Dot(const BasicVector4& a, const BasicVector4& b) { return Sum(Multiply(a, b)); }
 };
+using Vector4 = BasicVector4<double>;
+/// Of the linear solver: it gains one digit at a time, and Newton's method corrects what it rounds.
+using SingleVector4 = BasicVector4<float>;
+
+inline Vector4 Widen(const SingleVector4& a) { return {a.x, a.y, a.z, a.w}; }
+inline SingleVector4 Round(const Vector4& a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z), static_cast<float>(a.w)};
+}
 
 /// Begins arrays at a cache line, so that no load of a whole vector register straddles two.
 template <class T>
@@ -48,6 +59,7 @@ template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
 using Field = AlignedVector<Vector4>;
+using SingleField = AlignedVector<SingleVector4>;
 
 /// Particles that one task of a parallel loop takes. Fixed, so that sums do not depend on the number of threads.
 constexpr int kParticlesPerChunk = 256;

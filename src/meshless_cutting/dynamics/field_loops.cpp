@@ -2,25 +2,55 @@
 
 #include "dynamics/instruction_sets.h"
 
-namespace meshless_cutting {
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions of this file alone
 
-MESHLESS_CUTTING_CLONES void GatherSlots(const ParticleRange& range, const Vector4* buffer, const int* slot_begin,
-                                         const int* slots, double factor, Vector4* to) {
-  for (int j = range.begin; j < range.end; ++j) {
-    Vector4 sum;
-    for (int n = slot_begin[j]; n < slot_begin[j + 1]; ++n) sum += buffer[slots[n]];
-    to[j - range.begin] += factor * sum;
+namespace meshless_cutting {
+namespace {
+
+/// A SingleVector4 as the compiler's vector type, and what dot products are summed in: the compiler packs the loops
+/// over doubles by itself, but not these.
+typedef float Four __attribute__((vector_size(16)));
+typedef double WideFour __attribute__((vector_size(32)));
+
+[[gnu::always_inline]] inline Four Load(const SingleVector4& a) {
+  Four four;
+  __builtin_memcpy(&four, &a.x, sizeof(four));
+  return four;
+}
+[[gnu::always_inline]] inline void Store(const Four& four, SingleVector4& to) {
+  __builtin_memcpy(&to.x, &four, sizeof(four));
+}
+[[gnu::always_inline]] inline WideFour Widened(const Four& four) { return __builtin_convertvector(four, WideFour); }
+[[gnu::always_inline]] inline double Sum(const WideFour& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+
+template <class Sums>
+[[gnu::always_inline]] inline void GatherMore(const ParticleRange& range, const Sums& sums) {
+  const int chunk = range.begin / kParticlesPerChunk;
+  for (int n = sums.more_begin[chunk]; n < sums.more_begin[chunk + 1]; ++n) {
+    const SlotPair& pair = sums.more_slots[n];
+    sums.buffer[pair.to] += sums.buffer[pair.from];
   }
 }
 
-MESHLESS_CUTTING_CLONES double GatherProduct(const ParticleRange& range, const SlotSums& sums, double factor,
-                                             const double* free, const double* inertia, const Vector4* p, Vector4* q) {
-  Vector4 dot;
+}  // namespace
+
+MESHLESS_CUTTING_CLONES void GatherSlots(const ParticleRange& range, const SlotSums& sums, double factor, Vector4* to) {
+  GatherMore(range, sums);
+  for (int j = range.begin; j < range.end; ++j) to[j - range.begin] += factor * sums.buffer[sums.first_slot[j]];
+}
+
+MESHLESS_CUTTING_CLONES double GatherProduct(const ParticleRange& range, const SingleSlotSums& sums, double factor,
+                                             const double* free, const double* inertia, const SingleVector4* p,
+                                             SingleVector4* q) {
+  GatherMore(range, sums);
+  const auto single_factor = static_cast<float>(factor);
+  WideFour dot = {};
   for (int j = range.begin; j < range.end; ++j) {
-    Vector4 sum;
-    for (int n = sums.slot_begin[j]; n < sums.slot_begin[j + 1]; ++n) sum += sums.buffer[sums.slots[n]];
-    q[j] = free[j] * (inertia[j] * p[j] + factor * sum);
-    dot += Multiply(p[j], q[j]);
+    const Four sum = Load(sums.buffer[sums.first_slot[j]]), direction = Load(p[j]);
+    const Four product =
+        static_cast<float>(free[j]) * (static_cast<float>(inertia[j]) * direction + single_factor * sum);
+    Store(product, q[j]);
+    dot += Widened(direction * product);
   }
   return Sum(dot);
 }
@@ -28,10 +58,10 @@ MESHLESS_CUTTING_CLONES double GatherProduct(const ParticleRange& range, const S
 MESHLESS_CUTTING_CLONES GradientSums GatherGradient(const ParticleRange& range, const SlotSums& sums,
                                                     const double* free, const double* inertia, const double* weight,
                                                     const Vector4* y, const Vector4* target, Vector4* gradient) {
+  GatherMore(range, sums);
   Vector4 inertia_sum, residual, terms;
   for (int j = range.begin; j < range.end; ++j) {
-    Vector4 sum;
-    for (int n = sums.slot_begin[j]; n < sums.slot_begin[j + 1]; ++n) sum += sums.buffer[sums.slots[n]];
+    const Vector4& sum = sums.buffer[sums.first_slot[j]];
     const Vector4 way = y[j] - target[j], term = free[j] * (gradient[j] + sum);
     const Vector4 pull = (free[j] * inertia[j]) * way, total = term + pull;
     gradient[j] = total;
@@ -42,71 +72,66 @@ MESHLESS_CUTTING_CLONES GradientSums GatherGradient(const ParticleRange& range, 
   return {Sum(inertia_sum), Sum(residual), Sum(terms)};
 }
 
-MESHLESS_CUTTING_CLONES double MaskAndDot(const ParticleRange& range, const double* mask, const Vector4* p,
-                                          Vector4* q) {
-  Vector4 sum;
+MESHLESS_CUTTING_CLONES double AddMaskedAndDot(const ParticleRange& range, const double* mask, const Vector4* more,
+                                               const SingleVector4* p, SingleVector4* q) {
+  WideFour sum = {};
   for (int j = range.begin; j < range.end; ++j) {
-    q[j] = mask[j] * q[j];
-    sum += Multiply(p[j], q[j]);
+    q[j] += Round(mask[j] * more[j]);
+    sum += Widened(Load(p[j]) * Load(q[j]));
   }
   return Sum(sum);
 }
 
-MESHLESS_CUTTING_CLONES double AdvanceSolution(const ParticleRange& range, double alpha, const Vector4* direction,
-                                               const Vector4* product, const double* weight, Vector4* step,
-                                               Vector4* residual) {
-  Vector4 sum;
+MESHLESS_CUTTING_CLONES double AdvanceSolution(const ParticleRange& range, double alpha, const SingleVector4* direction,
+                                               const SingleVector4* product, const double* weight, SingleVector4* step,
+                                               SingleVector4* residual) {
+  const auto way = static_cast<float>(alpha);
+  WideFour sum = {};
   for (int j = range.begin; j < range.end; ++j) {
-    step[j] += alpha * direction[j];
-    const Vector4 r = residual[j] - alpha * product[j];
-    residual[j] = r;
-    sum += weight[j] * Multiply(r, r);
+    Store(Load(step[j]) + way * Load(direction[j]), step[j]);
+    const Four r = Load(residual[j]) - way * Load(product[j]);
+    Store(r, residual[j]);
+    sum += weight[j] * Widened(r * r);
   }
   return Sum(sum);
 }
 
-MESHLESS_CUTTING_CLONES void NextDirection(const ParticleRange& range, double beta, const Vector4* scaled,
-                                           Vector4* direction) {
-  for (int j = range.begin; j < range.end; ++j) direction[j] = scaled[j] + beta * direction[j];
+MESHLESS_CUTTING_CLONES void NextDirection(const ParticleRange& range, double beta, const SingleVector4* scaled,
+                                           SingleVector4* direction) {
+  const auto share = static_cast<float>(beta);
+  for (int j = range.begin; j < range.end; ++j) Store(Load(scaled[j]) + share * Load(direction[j]), direction[j]);
 }
 
-MESHLESS_CUTTING_CLONES void Restrict(const int* particles, int count, const Vector4* basis, const Vector4* r,
-                                      double* coarse) {
-  Vector4 s0, s1, s2, s3;
+MESHLESS_CUTTING_CLONES void Restrict(const int* particles, int count, const SingleVector4* basis,
+                                      const SingleVector4* r, SingleVector4* coarse) {
+  Four s0 = {}, s1 = {}, s2 = {}, s3 = {};
   for (int i = 0; i < count; ++i) {
-    const Vector4 &b = basis[particles[i]], &v = r[particles[i]];
-    s0 += b.x * v;
-    s1 += b.y * v;
-    s2 += b.z * v;
-    s3 += b.w * v;
+    const Four b = Load(basis[particles[i]]), v = Load(r[particles[i]]);
+    s0 += b[0] * v;
+    s1 += b[1] * v;
+    s2 += b[2] * v;
+    s3 += b[3] * v;
   }
-  const Vector4 sums[4] = {s0, s1, s2, s3};
-  for (int c = 0; c < 4; ++c) {
-    coarse[3 * c] = sums[c].x;
-    coarse[3 * c + 1] = sums[c].y;
-    coarse[3 * c + 2] = sums[c].z;
-  }
+  Store(s0, coarse[0]);
+  Store(s1, coarse[1]);
+  Store(s2, coarse[2]);
+  Store(s3, coarse[3]);
 }
 
-MESHLESS_CUTTING_CLONES double ScaleAndProlong(const ParticleRange& range, const SymmetricBlock* inverse,
-                                               const int* aggregate, const Vector4* basis, const double* coarse,
-                                               const Vector4* r, Vector4* z) {
-  Vector4 sum;
+MESHLESS_CUTTING_CLONES double ScaleAndProlong(const ParticleRange& range, const SingleBlock* inverse,
+                                               const int* aggregate, const SingleVector4* basis,
+                                               const SingleVector4* coarse, const SingleVector4* r, SingleVector4* z) {
+  WideFour sum = {};
   for (int j = range.begin; j < range.end; ++j) {
-    const SymmetricBlock& a = inverse[j];
-    const Vector4 &v = r[j], &b = basis[j];
-    const Vector4 local =
-        (v.x * Vector4{a.xx, a.xy, a.xz, 0} + v.y * Vector4{a.xy, a.yy, a.yz, 0}) + v.z * Vector4{a.xz, a.yz, a.zz, 0};
-    if (aggregate[j] < 0) {
-      z[j] = local;
-      sum += Multiply(v, local);
-      continue;
+    const SingleBlock& a = inverse[j];
+    const Four v = Load(r[j]), b = Load(basis[j]);
+    Four scaled = (v[0] * Load(a.x) + v[1] * Load(a.y)) + v[2] * Load(a.z);
+    if (aggregate[j] >= 0) {
+      const SingleVector4* u = coarse + CoarseMatrix::kFunctions * aggregate[j];
+      scaled += (b[0] * Load(u[0]) + b[1] * Load(u[1])) + (b[2] * Load(u[2]) + b[3] * Load(u[3]));
     }
-    const double* u = coarse + CoarseMatrix::kUnknowns * aggregate[j];
-    const Vector4 affine = (b.x * Vector4{u[0], u[1], u[2], 0} + b.y * Vector4{u[3], u[4], u[5], 0}) +
-                           (b.z * Vector4{u[6], u[7], u[8], 0} + b.w * Vector4{u[9], u[10], u[11], 0});
-    z[j] = local + affine;
-    sum += Multiply(v, z[j]);
+    Store(scaled, z[j]);
+    sum += Widened(v * scaled);
   }
   return Sum(sum);
 }

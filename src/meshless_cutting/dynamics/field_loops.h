@@ -6,6 +6,7 @@
 #include "dynamics/coarse_matrix.h"
 #include "dynamics/field.h"
 #include "dynamics/force_term.h"
+#include "dynamics/point_groups.h"
 
 namespace meshless_cutting {
 
@@ -17,19 +18,28 @@ struct ParticleRange {
         end(begin + kParticlesPerChunk < count ? begin + kParticlesPerChunk : count) {}
 };
 
-/// to[j - begin] += factor times the sum of buffer[slots[n]] over n in [slot_begin[j], slot_begin[j + 1]).
-void GatherSlots(const ParticleRange& range, const Vector4* buffer, const int* slot_begin, const int* slots,
-                 double factor, Vector4* to);
+/// What a loop over points left for the particles. Gathering it leaves the sums in the first slots: once only.
+template <class Vector>
+struct BasicSlotSums {
+  BasicSlotSums(Vector* buffer_, const PointGroups& groups)
+      : buffer(buffer_),
+        first_slot(groups.first_slot.data()),
+        more_begin(groups.more_begin.data()),
+        more_slots(groups.more_slots.data()) {}
 
-/// What the loop over points left for the particles.
-struct SlotSums {
-  const Vector4* buffer;
-  const int *slot_begin, *slots;
+  Vector* buffer;
+  const int *first_slot, *more_begin;
+  const SlotPair* more_slots;
 };
+using SlotSums = BasicSlotSums<Vector4>;
+using SingleSlotSums = BasicSlotSums<SingleVector4>;
+
+/// to[j - begin] += factor times the sum of the slots of j.
+void GatherSlots(const ParticleRange& range, const SlotSums& sums, double factor, Vector4* to);
 
 /// q[j] = free[j] (inertia[j] p[j] + factor (sum of its slots)); returns the sum of p[j] . q[j].
-double GatherProduct(const ParticleRange& range, const SlotSums& sums, double factor, const double* free,
-                     const double* inertia, const Vector4* p, Vector4* q);
+double GatherProduct(const ParticleRange& range, const SingleSlotSums& sums, double factor, const double* free,
+                     const double* inertia, const SingleVector4* p, SingleVector4* q);
 
 /// gradient[j] (in: of all other terms) += sum of its slots + inertia[j] (y[j] - target[j]), zero where not free.
 struct GradientSums {
@@ -39,22 +49,31 @@ struct GradientSums {
 GradientSums GatherGradient(const ParticleRange& range, const SlotSums& sums, const double* free, const double* inertia,
                             const double* weight, const Vector4* y, const Vector4* target, Vector4* gradient);
 
-/// q[j] *= mask[j]; returns the sum of p[j] . q[j].
-double MaskAndDot(const ParticleRange& range, const double* mask, const Vector4* p, Vector4* q);
+/// q[j] += mask[j] more[j]; returns the sum of p[j] . q[j].
+double AddMaskedAndDot(const ParticleRange& range, const double* mask, const Vector4* more, const SingleVector4* p,
+                       SingleVector4* q);
 
 /// step += alpha direction, residual -= alpha product; returns the weighted sum of |residual|^2.
-double AdvanceSolution(const ParticleRange& range, double alpha, const Vector4* direction, const Vector4* product,
-                       const double* weight, Vector4* step, Vector4* residual);
+double AdvanceSolution(const ParticleRange& range, double alpha, const SingleVector4* direction,
+                       const SingleVector4* product, const double* weight, SingleVector4* step,
+                       SingleVector4* residual);
 
 /// direction = scaled + beta direction.
-void NextDirection(const ParticleRange& range, double beta, const Vector4* scaled, Vector4* direction);
+void NextDirection(const ParticleRange& range, double beta, const SingleVector4* scaled, SingleVector4* direction);
 
-/// coarse[3 c + i] = sum over the listed particles of basis_c r_i.
-void Restrict(const int* particles, int count, const Vector4* basis, const Vector4* r, double* coarse);
+/// coarse[c] = sum over the listed particles of basis_c r.
+void Restrict(const int* particles, int count, const SingleVector4* basis, const SingleVector4* r,
+              SingleVector4* coarse);
+
+/// The columns of a symmetric 3 x 3 block.
+struct SingleBlock {
+  SingleVector4 x, y, z;
+};
 
 /// z[j] = inverse[j] r[j] + sum_c basis_c(j) coarse[aggregate of j][c], the latter not for particles of none; returns
 /// the sum of r . z.
-double ScaleAndProlong(const ParticleRange& range, const SymmetricBlock* inverse, const int* aggregate,
-                       const Vector4* basis, const double* coarse, const Vector4* r, Vector4* z);
+double ScaleAndProlong(const ParticleRange& range, const SingleBlock* inverse, const int* aggregate,
+                       const SingleVector4* basis, const SingleVector4* coarse, const SingleVector4* r,
+                       SingleVector4* z);
 
 }  // namespace meshless_cutting

@@ -43,8 +43,10 @@ class ForceTerm {
   /// Fixes the positive semidefinite tangent at y.
   virtual void Linearise(const Field& y) = 0;
 
-  /// q += tangent p; false: the tangent is zero, q is as it was. And the 3 x 3 blocks of its diagonal.
-  virtual bool AddProduct(const Field& p, Field& q) = 0;
+  /// Whether that is not zero.
+  virtual bool HasTangent() const = 0;
+  /// q += tangent p, and the 3 x 3 blocks of its diagonal.
+  virtual void AddProduct(const Field& p, Field& q) = 0;
   virtual void AddDiagonal(BlockField& blocks) = 0;
 
   /// Adds Z^T tangent Z, Z the coarse space.

@@ -21,6 +21,10 @@ void IncrementalPotential::Resize(int particles) {
   free.resize(particles);
   weight.resize(particles);
   target.resize(particles);
+  if (!terms_.empty()) {
+    wide_.resize(particles);
+    of_terms_.resize(particles);
+  }
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
   gradient_sums_.resize(chunk_sums_.size());
 }
@@ -50,17 +54,20 @@ void IncrementalPotential::Linearise(const Field& y) {
   for (ForceTerm* term : terms_) term->Linearise(y);
 }
 
-double IncrementalPotential::Product(const Field& p, Field& q) {
+double IncrementalPotential::Product(const SingleField& p, SingleField& q) {
   elastic_.ProductInSlots(p);
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-    chunk_sums_[c] = GatherProduct(ParticleRange(c, size()), elastic_.slot_sums(), elastic_.tangent_factor(),
+    chunk_sums_[c] = GatherProduct(ParticleRange(c, size()), elastic_.single_slot_sums(), elastic_.tangent_factor(),
                                    free.data(), inertia.data(), p.data(), q.data());
   });
-  bool is_changed = false;
-  for (ForceTerm* term : terms_) is_changed |= term->AddProduct(p, q);
-  if (is_changed) {
+  if (std::any_of(terms_.begin(), terms_.end(), [](const ForceTerm* term) { return term->HasTangent(); })) {
+    std::transform(p.begin(), p.end(), wide_.begin(), Widen);
+    std::fill(of_terms_.begin(), of_terms_.end(), Vector4());
+    for (ForceTerm* term : terms_) {
+      if (term->HasTangent()) term->AddProduct(wide_, of_terms_);
+    }
     pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {
-      chunk_sums_[c] = MaskAndDot(ParticleRange(c, size()), free.data(), p.data(), q.data());
+      chunk_sums_[c] = AddMaskedAndDot(ParticleRange(c, size()), free.data(), of_terms_.data(), p.data(), q.data());
     });
   }
   return SumOf(chunk_sums_);

@@ -40,8 +40,9 @@ class IncrementalPotential {
   /// Linearise(y).
   void LineariseExactly(const Field& y) { elastic_.Linearise(y, false); }
 
-  /// q = H p for p that is zero where not free; returns p . q.
-  double Product(const Field& p, Field& q);
+  /// q = H p for p that is zero where not free; returns p . q. In single precision, but for the terms besides
+  /// elasticity.
+  double Product(const SingleField& p, SingleField& q);
 
   /// The 3 x 3 blocks on the diagonal of H.
   void Diagonal(BlockField& blocks);
@@ -58,6 +59,7 @@ class IncrementalPotential {
   ThreadPool& pool_;
   std::vector<double> chunk_sums_;
   std::vector<GradientSums> gradient_sums_;
+  Field wide_, of_terms_;  // p and the terms' q in Product
 };
 
 }  // namespace meshless_cutting

@@ -3,6 +3,7 @@
 
 typedef double Lanes __attribute__((vector_size(8 * kLanes)));
 typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
+typedef float SingleLanes __attribute__((vector_size(4 * kLanes)));
 
 [[gnu::always_inline]] inline Lanes Load(const double* from) {
   Lanes lanes;
@@ -10,6 +11,22 @@ typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
   return lanes;
 }
 [[gnu::always_inline]] inline void Store(const Lanes& lanes, double* to) { __builtin_memcpy(to, &lanes, sizeof(lanes)); }
+
+/// As lanes of either precision, rounded or widened.
+template <class L>
+[[gnu::always_inline]] inline L LoadAs(const double* from) {
+  return __builtin_convertvector(Load(from), L);
+}
+template <class L>
+[[gnu::always_inline]] inline L LoadAs(const float* from) {
+  SingleLanes lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return __builtin_convertvector(lanes, L);
+}
+[[gnu::always_inline]] inline void Store(const Lanes& lanes, float* to) {
+  const SingleLanes rounded = __builtin_convertvector(lanes, SingleLanes);
+  __builtin_memcpy(to, &rounded, sizeof(rounded));
+}
 
 [[gnu::always_inline]] inline double Sum(const Lanes& a) { return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7])); }
 
@@ -58,6 +75,16 @@ typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
 }
 #endif
 
+#if defined(MESHLESS_CUTTING_LANES_AVX2)
+[[gnu::always_inline]] inline __m256 Pair(const SingleVector4& low, const SingleVector4& high) {
+  return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(&low.x)), _mm_load_ps(&high.x), 1);
+}
+[[gnu::always_inline]] inline void AddPair(const __m256& two, SingleVector4& low, SingleVector4& high) {
+  _mm_store_ps(&low.x, _mm_add_ps(_mm_load_ps(&low.x), _mm256_castps256_ps128(two)));
+  _mm_store_ps(&high.x, _mm_add_ps(_mm_load_ps(&high.x), _mm256_extractf128_ps(two, 1)));
+}
+#endif
+
 /// The vectors of eight particles, one to a lane.
 [[gnu::always_inline]] inline void LoadParticles(const Vector4* field, const int* particle, Lanes* v) {
 #if defined(MESHLESS_CUTTING_LANES_AVX512)
@@ -79,6 +106,24 @@ typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
   v[2] = Lanes{a.z, b.z, c.z, d.z, e.z, f.z, g.z, h.z};
 #endif
 }
+[[gnu::always_inline]] inline void LoadParticles(const SingleVector4* field, const int* particle, SingleLanes* v) {
+#if defined(MESHLESS_CUTTING_LANES_AVX2)
+  const __m256 a = Pair(field[particle[0]], field[particle[4]]), b = Pair(field[particle[1]], field[particle[5]]);
+  const __m256 c = Pair(field[particle[2]], field[particle[6]]), d = Pair(field[particle[3]], field[particle[7]]);
+  const __m256 xy_ab = _mm256_unpacklo_ps(a, b), z_ab = _mm256_unpackhi_ps(a, b);
+  const __m256 xy_cd = _mm256_unpacklo_ps(c, d), z_cd = _mm256_unpackhi_ps(c, d);
+  v[0] = reinterpret_cast<SingleLanes>(_mm256_shuffle_ps(xy_ab, xy_cd, 0x44));
+  v[1] = reinterpret_cast<SingleLanes>(_mm256_shuffle_ps(xy_ab, xy_cd, 0xee));
+  v[2] = reinterpret_cast<SingleLanes>(_mm256_shuffle_ps(z_ab, z_cd, 0x44));
+#else
+  for (int l = 0; l < kLanes; ++l) {
+    const SingleVector4& x = field[particle[l]];
+    v[0][l] = x.x;
+    v[1][l] = x.y;
+    v[2][l] = x.z;
+  }
+#endif
+}
 
 /// The reverse: adds lane l of v[0], v[1], v[2] to the vector at to[slot[l]]. Slots may coincide.
 [[gnu::always_inline]] inline void AddParticles(const Lanes* v, const int* slot, Vector4* to) {
@@ -96,5 +141,19 @@ typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
 #else
   // In the order of the above: where two slots coincide, the order of the sum matters to the last bit.
   for (int l : {0, 2, 1, 3, 4, 6, 5, 7}) to[slot[l]] += Vector4{v[0][l], v[1][l], v[2][l], 0};
+#endif
+}
+[[gnu::always_inline]] inline void AddParticles(const SingleLanes* v, const int* slot, SingleVector4* to) {
+#if defined(MESHLESS_CUTTING_LANES_AVX2)
+  const __m256 x = reinterpret_cast<__m256>(v[0]), y = reinterpret_cast<__m256>(v[1]);
+  const __m256 z = reinterpret_cast<__m256>(v[2]), zero = _mm256_setzero_ps();
+  const __m256 xy_low = _mm256_unpacklo_ps(x, y), z_low = _mm256_unpacklo_ps(z, zero);
+  const __m256 xy_high = _mm256_unpackhi_ps(x, y), z_high = _mm256_unpackhi_ps(z, zero);
+  AddPair(_mm256_shuffle_ps(xy_low, z_low, 0x44), to[slot[0]], to[slot[4]]);
+  AddPair(_mm256_shuffle_ps(xy_low, z_low, 0xee), to[slot[1]], to[slot[5]]);
+  AddPair(_mm256_shuffle_ps(xy_high, z_high, 0x44), to[slot[2]], to[slot[6]]);
+  AddPair(_mm256_shuffle_ps(xy_high, z_high, 0xee), to[slot[3]], to[slot[7]]);
+#else
+  for (int l : {0, 4, 1, 5, 2, 6, 3, 7}) to[slot[l]] += SingleVector4{v[0][l], v[1][l], v[2][l], 0};
 #endif
 }

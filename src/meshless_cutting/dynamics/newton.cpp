@@ -33,9 +33,8 @@ constexpr double kEnergyRounding = 1e-13;
 void NewtonSolver::TissueChanged(const Tissue& tissue) {
   const int particles = tissue.particle_count();
   preconditioner_.TissueChanged(tissue, potential_);
-  for (Field* field : {&gradient_, &trial_, &trial_gradient_, &step_, &residual_, &scaled_, &direction_, &product_}) {
-    field->resize(particles);
-  }
+  for (Field* field : {&gradient_, &trial_, &trial_gradient_}) field->resize(particles);
+  for (SingleField* field : {&step_, &residual_, &scaled_, &direction_, &product_}) field->resize(particles);
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
 }
 
@@ -81,13 +80,13 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
   ThreadPool& pool = potential_.pool();
   const int chunks = ChunkCount(count, kParticlesPerChunk);
   for (int j = 0; j < count; ++j) {
-    step_[j] = Vector4();
-    residual_[j] = -1.0 * gradient_[j];
+    step_[j] = SingleVector4();
+    residual_[j] = Round((-1 / norms_.residual) * gradient_[j]);
   }
   double rz = preconditioner_.Apply(residual_, scaled_, pool);
   direction_ = scaled_;
-  const double stop = relative_tolerance * relative_tolerance * norms_.residual * norms_.residual;
-  double reached = norms_.residual * norms_.residual;
+  const double stop = relative_tolerance * relative_tolerance;
+  double reached = 1;
   int iteration = 0;
   while (iteration < kLinearIterations) {
     const double curvature = potential_.Product(direction_, product_);
@@ -111,7 +110,7 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
     pool.ForEach(chunks,
                  [&](int c) { NextDirection(ParticleRange(c, count), beta, scaled_.data(), direction_.data()); });
   }
-  const double decades = 0.5 * std::log10(norms_.residual * norms_.residual / std::max(reached, 1e-300));
+  const double decades = -0.5 * std::log10(std::max(reached, 1e-300));
   preconditioner_.ReportIterations(iteration / std::max(decades, 0.1));
   return iteration;
 }
@@ -134,11 +133,12 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
     preconditioner_.Refresh(potential_);
     result.linear_iterations += SolveLinear(y, result.relative_residual);
 
-    const double slope = SumOver([&](const ParticleRange& range) {
-      double sum = 0;
-      for (int j = range.begin; j < range.end; ++j) sum += Dot(gradient_[j], step_[j]);
-      return sum;
-    });
+    const double scale = norms_.residual;
+    const double slope = scale * SumOver([&](const ParticleRange& range) {
+                           double sum = 0;
+                           for (int j = range.begin; j < range.end; ++j) sum += Dot(gradient_[j], Widen(step_[j]));
+                           return sum;
+                         });
     bool accepted = false;
     const IncrementalPotential::Norms old_norms = norms_;
     if (slope < 0) {
@@ -146,7 +146,7 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
       for (int halving = 0; halving <= kHalvings && !accepted; ++halving, share *= 0.5) {
         potential_.pool().ForEach(ChunkCount(potential_.size(), kParticlesPerChunk), [&](int c) {
           const ParticleRange range(c, potential_.size());
-          for (int j = range.begin; j < range.end; ++j) trial_[j] = y[j] + share * step_[j];
+          for (int j = range.begin; j < range.end; ++j) trial_[j] = y[j] + (share * scale) * Widen(step_[j]);
         });
         const double energy = potential_.Evaluate(trial_, trial_gradient_, norms_);
         if (!std::isfinite(energy) || !std::isfinite(norms_.residual)) continue;

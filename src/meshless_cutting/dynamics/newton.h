@@ -57,7 +57,8 @@ class NewtonSolver {
  private:
   static constexpr double kAtStart = 0.1;
 
-  /// The Newton step at y, with the exact tangent where that proves definite. Returns the linear iterations.
+  /// The Newton step at y in units of the residual, m/N, with the exact tangent where that proves definite. Returns the
+  /// linear iterations.
   int SolveLinear(const Field& y, double relative_residual);
   /// is_definite: false if a direction of negative curvature ended the iterations.
   int ConjugateGradients(double relative_tolerance, bool& is_definite);
@@ -70,7 +71,7 @@ class NewtonSolver {
   int iterations_;
   Preconditioner preconditioner_;
   Field gradient_, trial_, trial_gradient_;
-  Field step_, residual_, scaled_, direction_, product_;
+  SingleField step_, residual_, scaled_, direction_, product_;
   std::vector<double> chunk_sums_;
   IncrementalPotential::Norms norms_;
   double energy_ = 0, energy_rounding_ = 0;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "tissue/space_filling_curve.h"
+
 namespace meshless_cutting {
 namespace {
 
@@ -38,16 +40,6 @@ void FillGeneral(const Tissue& tissue, int p, const Eigen::Vector3d& mean, Point
       group.offset[at] = offset[i];
     }
   }
-}
-
-/// Place on the Z-order curve of the cell that holds x, x >= 0 in cells.
-std::uint64_t MortonCode(const Eigen::Vector3d& x) {
-  std::uint64_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::uint64_t>(x[axis]);
-    for (int bit = 0; bit < 20; ++bit) code |= (cell >> bit & 1) << (3 * bit + axis);
-  }
-  return code;
 }
 
 void Resize(PointGroup& group) {
@@ -134,7 +126,7 @@ void PointGroups::SortNewPoints(const Tissue& tissue) {
   curve_.resize(points);
   order_.resize(points);
   for (int p = known; p < points; ++p) {
-    curve_[p] = cell > 0 ? MortonCode((tissue.point_rest[p] - bounds.min()) / cell) : 0;
+    curve_[p] = cell > 0 ? MortonCode(((tissue.point_rest[p] - bounds.min()) / cell).cast<int>()) : 0;
     order_[p] = p;
   }
   const auto earlier = [&](int a, int b) { return curve_[a] != curve_[b] ? curve_[a] < curve_[b] : a < b; };
@@ -220,16 +212,28 @@ void PointGroups::BuildSlots(int particles) {
     }
     chunk.last_slot = static_cast<int>(slot_particle_.size());
   }
-  slot_count = static_cast<int>(slot_particle_.size());
+  const int slots = static_cast<int>(slot_particle_.size());
+  slot_count = slots + 1;
 
-  slot_begin.assign(particles + 1, 0);
-  for (int j : slot_particle_) ++slot_begin[j + 1];
-  for (int j = 0; j < particles; ++j) slot_begin[j + 1] += slot_begin[j];
-  slots.resize(slot_count);
-  for (int slot = slot_count - 1; slot >= 0; --slot) slots[--slot_begin[slot_particle_[slot] + 1]] = slot;
+  // The slots of each particle, in their order, in slot_of_.
+  slot_begin_.assign(particles + 1, 0);
+  for (int j : slot_particle_) ++slot_begin_[j + 1];
+  for (int j = 0; j < particles; ++j) slot_begin_[j + 1] += slot_begin_[j];
+  slot_of_.resize(slots);
+  for (int slot = slots - 1; slot >= 0; --slot) slot_of_[--slot_begin_[slot_particle_[slot] + 1]] = slot;
   // Filling from the back moved each end down to the start of its own row, one place too high.
-  std::copy(slot_begin.begin() + 1, slot_begin.end(), slot_begin.begin());
-  slot_begin[particles] = slot_count;
+  std::copy(slot_begin_.begin() + 1, slot_begin_.end(), slot_begin_.begin());
+  slot_begin_[particles] = slots;
+
+  first_slot.resize(particles);
+  more_slots.clear();
+  more_begin.clear();
+  for (int j = 0; j < particles; ++j) {
+    if (j % kParticlesPerChunk == 0) more_begin.push_back(static_cast<int>(more_slots.size()));
+    first_slot[j] = slot_begin_[j] < slot_begin_[j + 1] ? slot_of_[slot_begin_[j]] : slots;
+    for (int n = slot_begin_[j] + 1; n < slot_begin_[j + 1]; ++n) more_slots.push_back({slot_of_[n], first_slot[j]});
+  }
+  more_begin.push_back(static_cast<int>(more_slots.size()));
 }
 
 }  // namespace meshless_cutting

@@ -45,6 +45,11 @@ struct PointChunk {
   int first_slot, last_slot;
 };
 
+/// A slot whose sum is added to that of another.
+struct SlotPair {
+  int from, to;
+};
+
 /// Where a point is.
 struct PointPlace {
   int group, batch, lane;
@@ -56,11 +61,12 @@ struct PointGroups {
   std::vector<PointGroup> groups;  // kSupportShapes per material
   std::vector<PointPlace> places;  // per point of the tissue
   std::vector<PointChunk> chunks;
-  int slot_count = 0;  // size of a buffer of slots
+  int slot_count = 0;  // size of a buffer of slots; the last of them is no chunk's and zero
 
-  // Particle j sums slots[slot_begin[j]] ... slots[slot_begin[j + 1] - 1], in this order.
-  std::vector<int> slot_begin;
-  std::vector<int> slots;
+  // Most particles have one slot. Where chunks meet there are more: they are added to the first, in their order.
+  std::vector<int> first_slot;       // per particle; the last of all if no point has it
+  std::vector<SlotPair> more_slots;  // in the order of the particles
+  std::vector<int> more_begin;       // per kParticlesPerChunk particles, and the end
 
   /// Rebuilds from `tissue`. `stiffness` per material: alpha mu, Pa. The stabilisation of a point is alpha mu V / (8 h^2) 8 / K with
   /// h^2 = 4/3 of the mean square distance of the K rest positions from their mean (h of a cube of edge h).
@@ -79,7 +85,7 @@ struct PointGroups {
   std::vector<int> counts_;              // scratch, per group
   std::vector<int> order_;               // points along a space-filling curve
   std::vector<std::uint64_t> curve_;     // place of each point on it
-  std::vector<int> slot_of_, slot_particle_;
+  std::vector<int> slot_of_, slot_particle_, slot_begin_;
   std::vector<std::pair<double, PointChunk>> chunk_order_;
 };
 

@@ -9,21 +9,25 @@
 
 namespace meshless_cutting {
 
-/// What a loop reads and writes. `tangent` belongs to the group, `slots` to all groups.
+/// What a loop reads and writes. The tangent belongs to the group, slots to all groups. What is single is for `product`
+/// alone; a tangent is kept either way.
 struct KernelArguments {
   const PointGroup* group = nullptr;
   PointChunk chunk;
   int slot_count = 0;  // size of a buffer of slots
   LameConstants lame;
   const Vector4* field = nullptr;  // per particle: positions, m, or a direction
-  double* tangent = nullptr;       // [batch][tangent_size][lane]
   Vector4* slots = nullptr;        // buffer of slots
-  bool filtered = true;            // linearise: positive semidefinite
+  const SingleVector4* single_field = nullptr;
+  SingleVector4* single_slots = nullptr;
+  double* tangent = nullptr;        // [batch][tangent_size][lane]
+  float* single_tangent = nullptr;  // likewise, if there is no other
+  bool filtered = true;             // linearise: positive semidefinite
 };
 
 /// The loops for one material law and one shape of support.
 struct PointKernels {
-  int tangent_size;  // doubles per point
+  int tangent_size;  // numbers per point
 
   /// Energy of the points, J, strain and stabilisation; its gradient by each particle goes to the slots, N.
   double (*evaluate)(const KernelArguments&);
@@ -31,6 +35,8 @@ struct PointKernels {
   void (*linearise)(const KernelArguments&);
   /// Tangent times direction into the slots, N.
   void (*product)(const KernelArguments&);
+  /// The same in single precision throughout.
+  void (*single_product)(const KernelArguments&);
   /// The 3 x 3 blocks of the diagonal, N/m: two buffers' worth, first xx yy zz, then xy xz yz.
   void (*diagonal)(const KernelArguments&);
   /// All blocks g_a (d2Psi / dF_ia dF_lb) h_b of one point, times its volume, for `rows` vectors g and `columns`

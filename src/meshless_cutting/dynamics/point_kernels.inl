@@ -2,8 +2,10 @@
 // and material_laws.inl.
 
 /// The corners of a box. Modes[m][i] = sum_k H_m(k) x_k,i by the fast Hadamard transform: 24 additions for eight sums.
-template <bool kCentre>
+template <bool kCentre, class L>
 struct BoxSupport {
+  using Number = typename NumberOf<L>::type;
+  using Vector = BasicVector4<Number>;
   static constexpr int kModes = 8;
 
   BoxSupport(const PointGroup& group, int batch)
@@ -11,29 +13,29 @@ struct BoxSupport {
         slot(&group.slot[static_cast<std::size_t>(batch) * 8 * kLanes]),
         box(&group.box[static_cast<std::size_t>(batch) * 3 * kLanes]),
         hourglass(kCentre ? nullptr : &group.hourglass[static_cast<std::size_t>(batch) * 12 * kLanes]),
-        stiffness(Load(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
+        stiffness(LoadAs<L>(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
 
   /// Modes of a field and its gradient F_ij = sum_k x_k,i g_k,j.
-  [[gnu::always_inline]] void Gradient(const Vector4* field, Lanes (*modes)[3], Lanes* F) const {
+  [[gnu::always_inline]] void Gradient(const Vector* field, L (*modes)[3], L* F) const {
 #pragma GCC unroll 8
     for (int k = 0; k < 8; ++k) LoadParticles(field, particle + k * kLanes, modes[k]);
 #pragma GCC unroll 12
     for (int n = 0; n < 12; ++n) {
       const int k = kLow[n], bit = kBit[n];
       for (int i = 0; i < 3; ++i) {
-        const Lanes low = modes[k][i], high = modes[k | bit][i];
+        const L low = modes[k][i], high = modes[k | bit][i];
         modes[k][i] = low + high;
         modes[k | bit][i] = high - low;
       }
     }
     for (int j = 0; j < 3; ++j) {
-      const Lanes c = Load(box + j * kLanes);
+      const L c = LoadAs<L>(box + j * kLanes);
       for (int i = 0; i < 3; ++i) F[3 * i + j] = c * modes[1 << j][i];
     }
     if constexpr (!kCentre) {
       for (int n = 0; n < 4; ++n) {
         for (int j = 0; j < 3; ++j) {
-          const Lanes c = Load(hourglass + (3 * n + j) * kLanes);
+          const L c = LoadAs<L>(hourglass + (3 * n + j) * kLanes);
           for (int i = 0; i < 3; ++i) F[3 * i + j] += c * modes[kHourglassModes[n]][i];
         }
       }
@@ -41,8 +43,8 @@ struct BoxSupport {
   }
 
   /// S sum_k |x_k - affine fit|^2 = S/8 of the sum over the hourglass modes.
-  [[gnu::always_inline]] Lanes StabilisationEnergy(const Lanes (*modes)[3]) const {
-    Lanes sum = stiffness - stiffness;
+  [[gnu::always_inline]] L StabilisationEnergy(const L (*modes)[3]) const {
+    L sum = stiffness - stiffness;
     for (int n : kHourglassModes) {
       for (int i = 0; i < 3; ++i) sum += modes[n][i] * modes[n][i];
     }
@@ -50,19 +52,19 @@ struct BoxSupport {
   }
 
   /// Adds to the slots the transpose: sum_j P_ij g_k,j plus the stabilisation of `modes`, which are overwritten. P times volume.
-  [[gnu::always_inline]] void Scatter(const Lanes* P, Lanes (*modes)[3], Vector4* slots) const {
-    const Lanes s = 0.125 * stiffness;
+  [[gnu::always_inline]] void Scatter(const L* P, L (*modes)[3], Vector* slots) const {
+    const L s = Number(0.125) * stiffness;
     for (int n = 0; n < 4; ++n) {
       for (int i = 0; i < 3; ++i) {
-        Lanes sum = s * modes[kHourglassModes[n]][i];
+        L sum = s * modes[kHourglassModes[n]][i];
         if constexpr (!kCentre) {
-          for (int j = 0; j < 3; ++j) sum += P[3 * i + j] * Load(hourglass + (3 * n + j) * kLanes);
+          for (int j = 0; j < 3; ++j) sum += P[3 * i + j] * LoadAs<L>(hourglass + (3 * n + j) * kLanes);
         }
         modes[kHourglassModes[n]][i] = sum;
       }
     }
     for (int j = 0; j < 3; ++j) {
-      const Lanes c = Load(box + j * kLanes);
+      const L c = LoadAs<L>(box + j * kLanes);
       for (int i = 0; i < 3; ++i) modes[1 << j][i] = c * P[3 * i + j];
     }
     for (int i = 0; i < 3; ++i) modes[0][i] = s - s;
@@ -70,7 +72,7 @@ struct BoxSupport {
     for (int n = 0; n < 12; ++n) {
       const int k = kLow[n], bit = kBit[n];
       for (int i = 0; i < 3; ++i) {
-        const Lanes low = modes[k][i], high = modes[k | bit][i];
+        const L low = modes[k][i], high = modes[k | bit][i];
         modes[k][i] = low - high;
         modes[k | bit][i] = low + high;
       }
@@ -83,31 +85,34 @@ struct BoxSupport {
 
   int count() const { return 8; }
 
-  [[gnu::always_inline]] void GradientOf(int k, Lanes* g) const {
+  [[gnu::always_inline]] void GradientOf(int k, L* g) const {
     for (int j = 0; j < 3; ++j) {
-      const Lanes c = Load(box + j * kLanes);
+      const L c = LoadAs<L>(box + j * kLanes);
       g[j] = k >> j & 1 ? c : -c;
       if constexpr (!kCentre) {
         for (int n = 0; n < 4; ++n) {
-          const Lanes h = Load(hourglass + (3 * n + j) * kLanes);
+          const L h = LoadAs<L>(hourglass + (3 * n + j) * kLanes);
           g[j] += Hadamard(kHourglassModes[n], k) * h;
         }
       }
     }
   }
   /// Diagonal entry of the stabilisation, N/m.
-  [[gnu::always_inline]] Lanes StabilisationDiagonal(int) const { return 0.5 * stiffness; }
+  [[gnu::always_inline]] L StabilisationDiagonal(int) const { return 0.5 * stiffness; }
 
   // The pairs (k, k | bit) of the fast transform.
   static constexpr int kLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
   static constexpr int kBit[12] = {1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4};
   const int *particle, *slot;
   const double *box, *hourglass;
-  Lanes stiffness;
+  L stiffness;
 };
 
 /// Any K particles. Modes[k] = x_k less the affine fit to all of them.
+template <class L>
 struct GeneralSupport {
+  using Number = typename NumberOf<L>::type;
+  using Vector = BasicVector4<Number>;
   static constexpr int kModes = 64;  // the most particles per point
 
   GeneralSupport(const PointGroup& group, int batch)
@@ -117,44 +122,44 @@ struct GeneralSupport {
         gradient(&group.gradient[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
         fit(&group.fit[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
         offset(&group.offset[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
-        stiffness(Load(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
+        stiffness(LoadAs<L>(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
 
-  [[gnu::always_inline]] void Gradient(const Vector4* field, Lanes (*modes)[3], Lanes* F) const {
-    Lanes fitted[9], mean[3];
+  [[gnu::always_inline]] void Gradient(const Vector* field, L (*modes)[3], L* F) const {
+    L fitted[9], mean[3];
     for (int i = 0; i < 9; ++i) F[i] = fitted[i] = stiffness - stiffness;
     for (int i = 0; i < 3; ++i) mean[i] = stiffness - stiffness;
     for (int k = 0; k < K; ++k) {
       LoadParticles(field, particle + k * kLanes, modes[k]);
       for (int i = 0; i < 3; ++i) mean[i] += modes[k][i];
       for (int j = 0; j < 3; ++j) {
-        const Lanes g = Load(gradient + (3 * k + j) * kLanes), f = Load(fit + (3 * k + j) * kLanes);
+        const L g = LoadAs<L>(gradient + (3 * k + j) * kLanes), f = LoadAs<L>(fit + (3 * k + j) * kLanes);
         for (int i = 0; i < 3; ++i) {
           F[3 * i + j] += modes[k][i] * g;
           fitted[3 * i + j] += modes[k][i] * f;
         }
       }
     }
-    for (int i = 0; i < 3; ++i) mean[i] *= 1.0 / K;
+    for (int i = 0; i < 3; ++i) mean[i] *= Number(1.0 / K);
     for (int k = 0; k < K; ++k) {
-      Lanes d[3], affine[3];
-      for (int j = 0; j < 3; ++j) d[j] = Load(offset + (3 * k + j) * kLanes);
+      L d[3], affine[3];
+      for (int j = 0; j < 3; ++j) d[j] = LoadAs<L>(offset + (3 * k + j) * kLanes);
       Times(fitted, d, affine);
       for (int i = 0; i < 3; ++i) modes[k][i] = (modes[k][i] - mean[i]) - affine[i];
     }
   }
 
-  [[gnu::always_inline]] Lanes StabilisationEnergy(const Lanes (*modes)[3]) const {
-    Lanes sum = stiffness - stiffness;
+  [[gnu::always_inline]] L StabilisationEnergy(const L (*modes)[3]) const {
+    L sum = stiffness - stiffness;
     for (int k = 0; k < K; ++k) {
       for (int i = 0; i < 3; ++i) sum += modes[k][i] * modes[k][i];
     }
     return 0.5 * stiffness * sum;
   }
 
-  [[gnu::always_inline]] void Scatter(const Lanes* P, Lanes (*modes)[3], Vector4* slots) const {
+  [[gnu::always_inline]] void Scatter(const L* P, L (*modes)[3], Vector* slots) const {
     for (int k = 0; k < K; ++k) {
-      Lanes g[3], f[3];
-      for (int j = 0; j < 3; ++j) g[j] = Load(gradient + (3 * k + j) * kLanes);
+      L g[3], f[3];
+      for (int j = 0; j < 3; ++j) g[j] = LoadAs<L>(gradient + (3 * k + j) * kLanes);
       Times(P, g, f);
       for (int i = 0; i < 3; ++i) f[i] += stiffness * modes[k][i];
       AddParticles(f, slot + k * kLanes, slots);
@@ -162,26 +167,28 @@ struct GeneralSupport {
   }
 
   int count() const { return K; }
-  [[gnu::always_inline]] void GradientOf(int k, Lanes* g) const {
-    for (int j = 0; j < 3; ++j) g[j] = Load(gradient + (3 * k + j) * kLanes);
+  [[gnu::always_inline]] void GradientOf(int k, L* g) const {
+    for (int j = 0; j < 3; ++j) g[j] = LoadAs<L>(gradient + (3 * k + j) * kLanes);
   }
-  [[gnu::always_inline]] Lanes StabilisationDiagonal(int k) const {
-    Lanes share = (stiffness - stiffness) + (1.0 - 1.0 / K);
-    for (int j = 0; j < 3; ++j) share -= Load(offset + (3 * k + j) * kLanes) * Load(fit + (3 * k + j) * kLanes);
+  [[gnu::always_inline]] L StabilisationDiagonal(int k) const {
+    L share = (stiffness - stiffness) + (1.0 - 1.0 / K);
+    for (int j = 0; j < 3; ++j) share -= LoadAs<L>(offset + (3 * k + j) * kLanes) * LoadAs<L>(fit + (3 * k + j) * kLanes);
     return share * stiffness;
   }
 
   int K;
   const int *particle, *slot;
   const double *gradient, *fit, *offset;
-  Lanes stiffness;
+  L stiffness;
 };
 
-inline void ClearSlots(const KernelArguments& a, Vector4* slots) {
-  for (int slot = a.chunk.first_slot; slot < a.chunk.last_slot; ++slot) slots[slot] = Vector4();
+template <class Vector>
+inline void ClearSlots(const KernelArguments& a, Vector* slots) {
+  for (int slot = a.chunk.first_slot; slot < a.chunk.last_slot; ++slot) slots[slot] = Vector();
 }
-[[gnu::always_inline]] inline Lanes VolumeOf(const KernelArguments& a, int batch) {
-  return Load(&a.group->volume[static_cast<std::size_t>(batch) * kLanes]);
+template <class L>
+[[gnu::always_inline]] inline L VolumeOf(const KernelArguments& a, int batch) {
+  return LoadAs<L>(&a.group->volume[static_cast<std::size_t>(batch) * kLanes]);
 }
 
 template <class Law, class Support>
@@ -191,7 +198,7 @@ double EvaluatePoints(const KernelArguments& a) {
   Lanes energy = {};
   for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
     const Support support(*a.group, batch);
-    const Lanes volume = VolumeOf(a, batch);
+    const Lanes volume = VolumeOf<Lanes>(a, batch);
     Lanes modes[Support::kModes][3], F[9], P[9];
     support.Gradient(a.field, modes, F);
     energy += volume * law.Stress(F, P) + support.StabilisationEnergy(modes);
@@ -209,31 +216,50 @@ void LinearisePoints(const KernelArguments& a) {
     Lanes modes[Support::kModes][3], F[9], tangent[Law::kTangentSize];
     support.Gradient(a.field, modes, F);
     law.Linearise(F, tangent, a.filtered);
-    double* to = a.tangent + static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
-    for (int i = 0; i < Law::kTangentSize; ++i) Store(tangent[i], to + i * kLanes);
+    const std::size_t first = static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
+    for (int i = 0; i < Law::kTangentSize; ++i) {
+      if (a.tangent != nullptr) {
+        Store(tangent[i], a.tangent + first + i * kLanes);
+      } else {
+        Store(tangent[i], a.single_tangent + first + i * kLanes);
+      }
+    }
   }
 }
 
-template <class Law>
-[[gnu::always_inline]] inline void LoadTangent(const KernelArguments& a, int batch, Lanes* tangent) {
-  const double* from = a.tangent + static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
-  for (int i = 0; i < Law::kTangentSize; ++i) tangent[i] = Load(from + i * kLanes);
+template <class Law, class L>
+[[gnu::always_inline]] inline void LoadTangent(const KernelArguments& a, int batch, L* tangent) {
+  const std::size_t first = static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
+  for (int i = 0; i < Law::kTangentSize; ++i) {
+    tangent[i] = a.tangent != nullptr ? LoadAs<L>(a.tangent + first + i * kLanes)
+                                      : LoadAs<L>(a.single_tangent + first + i * kLanes);
+  }
+}
+
+template <class Law, class L, class Support, class Vector>
+[[gnu::always_inline]] inline void Product(const KernelArguments& a, const Vector* field, Vector* slots) {
+  ClearSlots(a, slots);
+  const Law law(a.lame.mu, a.lame.lambda);
+  for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
+    const Support support(*a.group, batch);
+    const L volume = VolumeOf<L>(a, batch);
+    L modes[Support::kModes][3], dF[9], dP[9], tangent[Law::kTangentSize];
+    support.Gradient(field, modes, dF);
+    LoadTangent<Law>(a, batch, tangent);
+    law.Differential(tangent, dF, dP);
+    for (int i = 0; i < 9; ++i) dP[i] *= volume;
+    support.Scatter(dP, modes, slots);
+  }
 }
 
 template <class Law, class Support>
 void ProductPoints(const KernelArguments& a) {
-  ClearSlots(a, a.slots);
-  const Law law(a.lame.mu, a.lame.lambda);
-  for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
-    const Support support(*a.group, batch);
-    const Lanes volume = VolumeOf(a, batch);
-    Lanes modes[Support::kModes][3], dF[9], dP[9], tangent[Law::kTangentSize];
-    support.Gradient(a.field, modes, dF);
-    LoadTangent<Law>(a, batch, tangent);
-    law.Differential(tangent, dF, dP);
-    for (int i = 0; i < 9; ++i) dP[i] *= volume;
-    support.Scatter(dP, modes, a.slots);
-  }
+  Product<Law, Lanes, Support>(a, a.field, a.slots);
+}
+
+template <class Law, class Support>
+void SingleProductPoints(const KernelArguments& a) {
+  Product<Law, SingleLanes, Support>(a, a.single_field, a.single_slots);
 }
 
 template <class Law, class Support>
@@ -243,7 +269,7 @@ void DiagonalOfPoints(const KernelArguments& a) {
   const Law law(a.lame.mu, a.lame.lambda);
   for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
     const Support support(*a.group, batch);
-    const Lanes volume = VolumeOf(a, batch);
+    const Lanes volume = VolumeOf<Lanes>(a, batch);
     Lanes tangent[Law::kTangentSize];
     LoadTangent<Law>(a, batch, tangent);
     for (int k = 0; k < support.count(); ++k) {
@@ -265,7 +291,8 @@ void BlocksOfPoint(const KernelArguments& a, int batch, int lane, int rows, cons
   const Law law(a.lame.mu, a.lame.lambda);
   double tangent[Law::kTangentSize];
   for (int i = 0; i < Law::kTangentSize; ++i) {
-    tangent[i] = a.tangent[(static_cast<std::size_t>(batch) * Law::kTangentSize + i) * kLanes + lane];
+    const std::size_t at = (static_cast<std::size_t>(batch) * Law::kTangentSize + i) * kLanes + lane;
+    tangent[i] = a.tangent != nullptr ? a.tangent[at] : a.single_tangent[at];
   }
   const double volume = a.group->volume[static_cast<std::size_t>(batch) * kLanes + lane];
   for (int r = 0; r < rows; ++r) {
@@ -276,17 +303,23 @@ void BlocksOfPoint(const KernelArguments& a, int batch, int lane, int rows, cons
   }
 }
 
-template <class Law, class Support>
+template <class Law, class Support, class SingleSupport>
 constexpr PointKernels MakePointKernels() {
-  return {Law::kTangentSize,           EvaluatePoints<Law, Support>,   LinearisePoints<Law, Support>,
-          ProductPoints<Law, Support>, DiagonalOfPoints<Law, Support>, BlocksOfPoint<Law>};
+  return {Law::kTangentSize,
+          EvaluatePoints<Law, Support>,
+          LinearisePoints<Law, Support>,
+          ProductPoints<Law, Support>,
+          SingleProductPoints<Law, SingleSupport>,
+          DiagonalOfPoints<Law, Support>,
+          BlocksOfPoint<Law>};
 }
 
 // Rows in the order of MaterialModel, columns in that of SupportShape.
 #define MESHLESS_CUTTING_POINT_KERNEL_ROW(Law)                                              \
   {                                                                                         \
-    MakePointKernels<Law, BoxSupport<true>>(), MakePointKernels<Law, BoxSupport<false>>(), \
-        MakePointKernels<Law, GeneralSupport>()                                             \
+    MakePointKernels<Law, BoxSupport<true, Lanes>, BoxSupport<true, SingleLanes>>(),        \
+        MakePointKernels<Law, BoxSupport<false, Lanes>, BoxSupport<false, SingleLanes>>(),  \
+        MakePointKernels<Law, GeneralSupport<Lanes>, GeneralSupport<SingleLanes>>()         \
   }
 #define MESHLESS_CUTTING_POINT_KERNEL_TABLE                                                                             \
   {                                                                                                                     \

@@ -5,6 +5,7 @@
 #include <immintrin.h>
 
 #pragma GCC target("avx2")
+#define MESHLESS_CUTTING_LANES_AVX2       // GCC does not define __AVX2__ for the pragma
 #pragma GCC diagnostic ignored "-Wpsabi"  // lanes are passed between inlined functions of this file alone
 
 namespace meshless_cutting {

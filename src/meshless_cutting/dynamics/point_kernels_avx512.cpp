@@ -5,7 +5,8 @@
 #include <immintrin.h>
 
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw")
-#define MESHLESS_CUTTING_LANES_AVX512  // GCC does not define __AVX512F__ for the pragma
+#define MESHLESS_CUTTING_LANES_AVX2  // GCC does not define __AVX2__ and __AVX512F__ for the pragma
+#define MESHLESS_CUTTING_LANES_AVX512
 #pragma GCC diagnostic ignored "-Wpsabi"  // lanes are passed between inlined functions of this file alone
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // GCC bug 105593, in its own intrinsics
 

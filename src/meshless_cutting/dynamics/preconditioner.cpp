@@ -19,29 +19,22 @@ constexpr int kLeastSolves = 8;
 /// Aggregates from before a cut are made again after so many solves in any case.
 constexpr int kMostSolves = 60;
 
-SymmetricBlock Inverse(const SymmetricBlock& b) {
-  SymmetricBlock inverse;
+SingleBlock InverseOf(const SymmetricBlock& b) {
   const double cxx = b.yy * b.zz - b.yz * b.yz, cxy = b.xz * b.yz - b.xy * b.zz, cxz = b.xy * b.yz - b.xz * b.yy;
   const double det = b.xx * cxx + b.xy * cxy + b.xz * cxz;
   if (!(det > 1e-12 * b.xx * b.yy * b.zz)) {  // rounding has eaten a direction: the diagonal alone still scales
-    inverse.xx = 1 / b.xx;
-    inverse.yy = 1 / b.yy;
-    inverse.zz = 1 / b.zz;
-    return inverse;
+    return {Round({1 / b.xx, 0, 0, 0}), Round({0, 1 / b.yy, 0, 0}), Round({0, 0, 1 / b.zz, 0})};
   }
-  inverse.xx = cxx / det;
-  inverse.xy = cxy / det;
-  inverse.xz = cxz / det;
-  inverse.yy = (b.xx * b.zz - b.xz * b.xz) / det;
-  inverse.yz = (b.xy * b.xz - b.xx * b.yz) / det;
-  inverse.zz = (b.xx * b.yy - b.xy * b.xy) / det;
-  return inverse;
+  const double xy = cxy / det, xz = cxz / det, yz = (b.xy * b.xz - b.xx * b.yz) / det;
+  return {Round({cxx / det, xy, xz, 0}), Round({xy, (b.xx * b.zz - b.xz * b.xz) / det, yz, 0}),
+          Round({xz, yz, (b.xx * b.yy - b.xy * b.xy) / det, 0})};
 }
 
 }  // namespace
 
 void Preconditioner::TissueChanged(const Tissue& tissue, const IncrementalPotential& potential) {
   const std::size_t particles = tissue.particle_count(), known = inverse_.size();
+  diagonal_.resize(particles);
   inverse_.resize(particles);
   chunk_sums_.resize(ChunkCount(tissue.particle_count(), kParticlesPerChunk));
   if (known == 0 || particles < known) {
@@ -49,6 +42,7 @@ void Preconditioner::TissueChanged(const Tissue& tissue, const IncrementalPotent
     return;
   }
   coarse_.Extend(tissue, potential.free);
+  RoundBasis();
   tissue_changed_ = true;
 }
 
@@ -58,9 +52,17 @@ void Preconditioner::BeginStep(const Tissue& tissue, const IncrementalPotential&
 
 void Preconditioner::BuildCoarse(const Tissue& tissue, const IncrementalPotential& potential) {
   coarse_.Build(tissue, potential.free, std::min(kAggregates, tissue.particle_count() / kParticlesPerAggregate));
-  coarse_vector_.resize(coarse_.size());
+  RoundBasis();
+  coarse_vector_.resize(static_cast<std::size_t>(coarse_.aggregates().count()) * CoarseMatrix::kFunctions);
+  coarse_unknowns_.resize(coarse_.size());
   tissue_changed_ = false;
   coarse_is_stale_ = true;
+}
+
+void Preconditioner::RoundBasis() {
+  const Field& basis = coarse_.aggregates().basis;
+  basis_.resize(basis.size());
+  std::transform(basis.begin(), basis.end(), basis_.begin(), Round);
 }
 
 void Preconditioner::RefreshCoarse(IncrementalPotential& potential) {
@@ -85,26 +87,34 @@ void Preconditioner::ReportIterations(double per_decade) {
 void Preconditioner::Refresh(IncrementalPotential& potential) {
   // Since a cut the matrix has a shape that the points no longer fit: it serves until the next step.
   if (coarse_is_stale_ && !tissue_changed_) RefreshCoarse(potential);
-  potential.Diagonal(inverse_);
+  potential.Diagonal(diagonal_);
   potential.pool().ForEach(ChunkCount(potential.size(), kParticlesPerChunk), [&](int c) {
     const ParticleRange range(c, potential.size());
     for (int j = range.begin; j < range.end; ++j) {
-      inverse_[j] = potential.free[j] > 0 ? Inverse(inverse_[j]) : SymmetricBlock();
+      inverse_[j] = potential.free[j] > 0 ? InverseOf(diagonal_[j]) : SingleBlock();
     }
   });
 }
 
-double Preconditioner::Apply(const Field& r, Field& z, ThreadPool& pool) {
+double Preconditioner::Apply(const SingleField& r, SingleField& z, ThreadPool& pool) {
   const Aggregates& aggregates = coarse_.aggregates();
   pool.ForEach(aggregates.count(), [&](int a) {
-    Restrict(&aggregates.particles[aggregates.begin[a]], aggregates.begin[a + 1] - aggregates.begin[a],
-             aggregates.basis.data(), r.data(), &coarse_vector_[CoarseMatrix::kUnknowns * a]);
+    Restrict(&aggregates.particles[aggregates.begin[a]], aggregates.begin[a + 1] - aggregates.begin[a], basis_.data(),
+             r.data(), &coarse_vector_[CoarseMatrix::kFunctions * a]);
   });
-  coarse_.Solve(coarse_vector_.data());
+  for (std::size_t n = 0; n < coarse_vector_.size(); ++n) {
+    const Vector4 u = Widen(coarse_vector_[n]);
+    for (int i = 0; i < 3; ++i) coarse_unknowns_[3 * n + i] = (&u.x)[i];
+  }
+  coarse_.Solve(coarse_unknowns_.data());
+  for (std::size_t n = 0; n < coarse_vector_.size(); ++n) {
+    const double* u = &coarse_unknowns_[3 * n];
+    coarse_vector_[n] = Round({u[0], u[1], u[2], 0});
+  }
   const int count = static_cast<int>(r.size());
   pool.ForEach(ChunkCount(count, kParticlesPerChunk), [&](int c) {
     chunk_sums_[c] = ScaleAndProlong(ParticleRange(c, count), inverse_.data(), aggregates.of_particle.data(),
-                                     aggregates.basis.data(), coarse_vector_.data(), r.data(), z.data());
+                                     basis_.data(), coarse_vector_.data(), r.data(), z.data());
   });
   double sum = 0;
   for (double s : chunk_sums_) sum += s;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/coarse_matrix.h"
+#include "dynamics/field_loops.h"
 #include "dynamics/incremental_potential.h"
 
 namespace meshless_cutting {
@@ -22,7 +23,7 @@ class Preconditioner {
   void Refresh(IncrementalPotential& potential);
 
   /// z = B r, with z zero where particles are not free; returns r . z.
-  double Apply(const Field& r, Field& z, ThreadPool& pool);
+  double Apply(const SingleField& r, SingleField& z, ThreadPool& pool);
 
   /// How many iterations the last solve took, per factor 10 that it reduced the residual by.
   void ReportIterations(double per_decade);
@@ -31,13 +32,18 @@ class Preconditioner {
   void BuildCoarse(const Tissue& tissue, const IncrementalPotential& potential);
   void RefreshCoarse(IncrementalPotential& potential);
 
-  BlockField inverse_;
+  void RoundBasis();
+
+  BlockField diagonal_;
+  AlignedVector<SingleBlock> inverse_;
+  SingleField basis_;  // that of the aggregates
   CoarseMatrix coarse_;
   bool coarse_is_stale_ = true, coarse_is_new_ = false;
   bool tissue_changed_ = false;  // since the aggregates were made
   int solves_ = 0;               // since the coarse matrix was made
   double iterations_when_new_ = 0;
-  std::vector<double> coarse_vector_;
+  SingleField coarse_vector_;  // CoarseMatrix::kFunctions per aggregate
+  std::vector<double> coarse_unknowns_;
   std::vector<double> chunk_sums_;
 };
 

@@ -29,7 +29,7 @@ double StiffnessDampingTerm::Evaluate(const Field& y, Field& gradient) {
   pool.ForEach(static_cast<int>(chunk_energy_.size()), [&](int c) {
     const ParticleRange range(c, count);
     Vector4 force[kParticlesPerChunk];
-    GatherSlots(range, sums.buffer, sums.slot_begin, sums.slots, beta_ * rate_, force);
+    GatherSlots(range, sums, beta_ * rate_, force);
     chunk_energy_[c] = 0;
     for (int j = range.begin; j < range.end; ++j) {
       chunk_energy_[c] += 0.5 * Dot(way_[j], force[j - range.begin]);

@@ -23,7 +23,8 @@ class StiffnessDampingTerm : public ForceTerm {
   void BeginStep(const StageMotion& motion) override;
   double Evaluate(const Field& y, Field& gradient) override;
   void Linearise(const Field&) override {}
-  bool AddProduct(const Field&, Field&) override { return false; }
+  bool HasTangent() const override { return false; }
+  void AddProduct(const Field&, Field&) override {}
   void AddDiagonal(BlockField&) override {}
   void AddCoarse(CoarseMatrix&) override {}
 

@@ -253,7 +253,7 @@ void ViscousTerm::Linearise(const Field& y) {
   });
 }
 
-bool ViscousTerm::AddProduct(const Field& p, Field& q) {
+void ViscousTerm::AddProduct(const Field& p, Field& q) {
   ForEachPoint([&](int n) {
     const double mu = series_[points_[n].material].mu * points_[n].volume * gain_[points_[n].material];
     double dF[9], dP[9];
@@ -263,7 +263,6 @@ bool ViscousTerm::AddProduct(const Field& p, Field& q) {
     return 0.0;
   });
   Gather(q);
-  return true;
 }
 
 void ViscousTerm::AddDiagonal(BlockField& blocks) {

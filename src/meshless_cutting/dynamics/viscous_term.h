@@ -47,7 +47,8 @@ class ViscousTerm : public ForceTerm {
   void BeginStep(const StageMotion& motion) override;
   double Evaluate(const Field& y, Field& gradient) override;
   void Linearise(const Field& y) override;
-  bool AddProduct(const Field& p, Field& q) override;
+  bool HasTangent() const override { return true; }
+  void AddProduct(const Field& p, Field& q) override;
   void AddDiagonal(BlockField& blocks) override;
   /// The coarse space of the preconditioner does without: it is an approximation anyhow.
   void AddCoarse(CoarseMatrix&) override {}

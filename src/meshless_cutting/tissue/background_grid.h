@@ -29,6 +29,7 @@ class BackgroundGrid {
 
   /// Node by grid coordinates: node c is the lower corner of cell c; each from -margin to cells + margin.
   int NodeIndex(const Eigen::Vector3i& c) const;
+  Eigen::Vector3i first_node() const { return Eigen::Vector3i::Constant(-margin_); }
   Eigen::Vector3i NodeCoordinates(int node) const;
   Eigen::Vector3d NodePosition(int node) const;  // m
 

@@ -10,6 +10,16 @@
 //   Block(s, g, h, B)                B_il = g_a (d2Psi / dF_ia dF_lb) h_b, the 3 x 3 block that joins two gradients
 // No std:: function is used but through Log and Sqrt, which whoever includes this provides for its T.
 
+/// What one lane of T is.
+template <class T>
+struct NumberOf {
+  using type = std::decay_t<decltype(T()[0])>;
+};
+template <>
+struct NumberOf<double> {
+  using type = double;
+};
+
 template <class T>
 [[gnu::always_inline]] inline void Cofactor(const T* F, T* cof) {
   cof[0] = F[4] * F[8] - F[5] * F[7];
@@ -274,17 +284,18 @@ struct StVenantKirchhoffLaw {
 
   template <class T>
   [[gnu::always_inline]] void Differential(const T* s, const T* dF, T* dP) const {
+    using Number = typename NumberOf<T>::type;
     const T *F = s, *S = s + 9;
     T dE[6], dS[6], FdS[9];
     for (int a = 0; a < 3; ++a) dE[a] = F[a] * dF[a] + F[3 + a] * dF[3 + a] + F[6 + a] * dF[6 + a];
     const int row[3] = {0, 0, 1}, column[3] = {1, 2, 2};
     for (int n = 0; n < 3; ++n) {
       const int a = row[n], b = column[n];
-      dE[3 + n] = 0.5 * ((F[a] * dF[b] + F[3 + a] * dF[3 + b] + F[6 + a] * dF[6 + b]) +
-                         (F[b] * dF[a] + F[3 + b] * dF[3 + a] + F[6 + b] * dF[6 + a]));
+      dE[3 + n] = Number(0.5) * ((F[a] * dF[b] + F[3 + a] * dF[3 + b] + F[6 + a] * dF[6 + b]) +
+                                 (F[b] * dF[a] + F[3 + b] * dF[3 + a] + F[6 + b] * dF[6 + a]));
     }
-    const T trace = lambda * (dE[0] + dE[1] + dE[2]);
-    for (int a = 0; a < 6; ++a) dS[a] = 2.0 * mu * dE[a];
+    const T trace = Number(lambda) * (dE[0] + dE[1] + dE[2]);
+    for (int a = 0; a < 6; ++a) dS[a] = Number(2.0 * mu) * dE[a];
     for (int a = 0; a < 3; ++a) dS[a] += trace;
     TimesSymmetric(dF, S, dP);
     TimesSymmetric(F, dS, FdS);
@@ -337,9 +348,10 @@ struct LinearLaw {
   }
   template <class T>
   [[gnu::always_inline]] void Differential(const T*, const T* dF, T* dP) const {
-    const T trace = lambda * (dF[0] + dF[4] + dF[8]);
+    using Number = typename NumberOf<T>::type;
+    const T trace = Number(lambda) * (dF[0] + dF[4] + dF[8]);
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) dP[3 * i + j] = mu * (dF[3 * i + j] + dF[3 * j + i]);
+      for (int j = 0; j < 3; ++j) dP[3 * i + j] = Number(mu) * (dF[3 * i + j] + dF[3 * j + i]);
       dP[4 * i] += trace;
     }
   }
