@@ -146,6 +146,8 @@ struct Simulation::Parts {
   void Build() {
     cutting.reset();
     probes.reset();
+    dynamics.reset();  // two bodies at once would need twice the memory
+    body.reset();
     body = std::make_unique<SoftBody>(lattice, scene.object, built.tools || built.slits);
     if (built.slits) OpenSlits();
     dynamics = std::make_unique<Dynamics>(MakeDynamicsConfig(scene), body->tissue());

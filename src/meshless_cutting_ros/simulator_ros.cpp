@@ -7,6 +7,9 @@
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include "scene_loading.h"
 #include "topics.h"
@@ -19,6 +22,14 @@ constexpr std::int64_t kLongestSleep_ns = 5000000;
 constexpr std::int64_t kTimeJump_ns = 100000000;
 
 std::int64_t ToNanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+/// To the system, what the allocator keeps of a session that has ended: otherwise a process that runs for days holds the
+/// most that any of its sessions and queues ever needed at once.
+void ReturnFreeMemory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
 
 }  // namespace
 
@@ -215,6 +226,7 @@ void SimulatorRos::BeginSession() { publishers_->Push(View(run_.session->Begin(c
 void SimulatorRos::RestartSession(const std::string& reason) {
   run_.forces->Zero(ros::Time::now());
   run_.session->Reset(++session_number_);
+  ReturnFreeMemory();
   ROS_INFO("Session %u: %s", session_number_, reason.c_str());
   monitor_.Restart();
   BeginSession();

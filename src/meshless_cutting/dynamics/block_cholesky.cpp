@@ -58,36 +58,50 @@ MESHLESS_CUTTING_CLONES void Multiply(const double* A, const double* B, double* 
   }
 }
 
+/// A column of a block in single precision.
+typedef float Four __attribute__((vector_size(16)));
+typedef int FourOrder __attribute__((vector_size(16)));
+struct SingleColumn {
+  Four part[3];
+};
+[[gnu::always_inline]] inline SingleColumn Load(const float* from) {
+  SingleColumn column;
+  __builtin_memcpy(&column, from, sizeof(column));
+  return column;
+}
+
 /// to -= A x, A of `columns` columns, a multiple of four.
-MESHLESS_CUTTING_CLONES void SubtractForward(const double* A, const double* x, int columns, double* to) {
-  Column sum[4] = {};
+MESHLESS_CUTTING_CLONES void SubtractForward(const float* A, const float* x, int columns, float* to) {
+  SingleColumn sum[4] = {};
   for (int c = 0; c < columns; c += 4) {
     for (int d = 0; d < 4; ++d) {
-      const Column a = Load(A + (c + d) * kBlock);
+      const SingleColumn a = Load(A + (c + d) * kBlock);
       for (int i = 0; i < 3; ++i) sum[d].part[i] += x[c + d] * a.part[i];
     }
   }
-  Column result = Load(to);
+  SingleColumn result = Load(to);
   for (int i = 0; i < 3; ++i) {
     result.part[i] -= (sum[0].part[i] + sum[1].part[i]) + (sum[2].part[i] + sum[3].part[i]);
   }
-  Store(result, to);
+  __builtin_memcpy(to, &result, sizeof(result));
 }
 
 /// to -= A^T x, likewise.
-MESHLESS_CUTTING_CLONES void SubtractBackward(const double* A, const double* x, int columns, double* to) {
-  const Column v = Load(x);
+MESHLESS_CUTTING_CLONES void SubtractBackward(const float* A, const float* x, int columns, float* to) {
+  const SingleColumn v = Load(x);
   for (int c = 0; c < columns; c += 4) {
-    Third sum[4];
+    Four sum[4];
     for (int d = 0; d < 4; ++d) {
-      const Column a = Load(A + (c + d) * kBlock);
+      const SingleColumn a = Load(A + (c + d) * kBlock);
       sum[d] = a.part[0] * v.part[0] + a.part[1] * v.part[1] + a.part[2] * v.part[2];
     }
-    const ThirdOrder even = {0, 4, 2, 6}, odd = {1, 5, 3, 7}, low = {0, 1, 4, 5}, high = {2, 3, 6, 7};
-    const Third ab = __builtin_shuffle(sum[0], sum[1], even) + __builtin_shuffle(sum[0], sum[1], odd);
-    const Third cd = __builtin_shuffle(sum[2], sum[3], even) + __builtin_shuffle(sum[2], sum[3], odd);
-    const Third total = __builtin_shuffle(ab, cd, low) + __builtin_shuffle(ab, cd, high);
-    const Third result = LoadThird(to + c) - total;
+    const FourOrder even = {0, 2, 4, 6}, odd = {1, 3, 5, 7};
+    const Four ab = __builtin_shuffle(sum[0], sum[1], even) + __builtin_shuffle(sum[0], sum[1], odd);
+    const Four cd = __builtin_shuffle(sum[2], sum[3], even) + __builtin_shuffle(sum[2], sum[3], odd);
+    const Four total = __builtin_shuffle(ab, cd, even) + __builtin_shuffle(ab, cd, odd);
+    Four result;
+    __builtin_memcpy(&result, to + c, sizeof(result));
+    result -= total;
     __builtin_memcpy(to + c, &result, sizeof(result));
   }
 }
@@ -104,6 +118,8 @@ void BlockCholesky::Reset(const std::vector<int>& first) {
   }
   entries_.assign(total, 0);
   inverse_.resize(first.size() * kSquare);
+  single_entries_.resize(total);
+  single_inverse_.resize(inverse_.size());
 }
 
 void BlockCholesky::Factor() {
@@ -122,6 +138,9 @@ void BlockCholesky::Factor() {
     }
     FactorDiagonal(a);
   }
+  const auto round = [](double entry) { return static_cast<float>(entry); };
+  std::transform(entries_.begin(), entries_.end(), single_entries_.begin(), round);
+  std::transform(inverse_.begin(), inverse_.end(), single_inverse_.begin(), round);
 }
 
 void BlockCholesky::FactorDiagonal(int a) {
@@ -156,23 +175,23 @@ void BlockCholesky::FactorDiagonal(int a) {
   }
 }
 
-void BlockCholesky::Solve(double* x) const {
+void BlockCholesky::Solve(float* x) const {
   const int blocks = static_cast<int>(first_.size());
   for (int a = 0; a < blocks; ++a) {
-    double rest[kBlock], *here = x + kBlock * a;
-    SubtractForward(&entries_[begin_[a]], x + kBlock * first_[a], kBlock * (a - first_[a]), here);
+    float rest[kBlock], *here = x + kBlock * a;
+    SubtractForward(&single_entries_[begin_[a]], x + kBlock * first_[a], kBlock * (a - first_[a]), here);
     std::copy(here, here + kBlock, rest);
-    std::fill(here, here + kBlock, 0.0);
-    SubtractForward(&inverse_[static_cast<std::size_t>(a) * kSquare], rest, kBlock, here);
+    std::fill(here, here + kBlock, 0.0F);
+    SubtractForward(&single_inverse_[static_cast<std::size_t>(a) * kSquare], rest, kBlock, here);
     for (int i = 0; i < kBlock; ++i) here[i] = -here[i];
   }
   for (int a = blocks - 1; a >= 0; --a) {
-    double rest[kBlock], *here = x + kBlock * a;
+    float rest[kBlock], *here = x + kBlock * a;
     std::copy(here, here + kBlock, rest);
-    std::fill(here, here + kBlock, 0.0);
-    SubtractBackward(&inverse_[static_cast<std::size_t>(a) * kSquare], rest, kBlock, here);
+    std::fill(here, here + kBlock, 0.0F);
+    SubtractBackward(&single_inverse_[static_cast<std::size_t>(a) * kSquare], rest, kBlock, here);
     for (int i = 0; i < kBlock; ++i) here[i] = -here[i];
-    SubtractBackward(&entries_[begin_[a]], here, kBlock * (a - first_[a]), x + kBlock * first_[a]);
+    SubtractBackward(&single_entries_[begin_[a]], here, kBlock * (a - first_[a]), x + kBlock * first_[a]);
   }
 }
 

@@ -38,10 +38,13 @@ class CoarseMatrix {
   /// the blocks on the diagonal the part above it is ignored.
   void Add(int a, int c, int b, int d, const double* block);
 
+  /// Entry (i, j), j <= i, of two coupled aggregates, before Factor().
+  double At(int i, int j) const { return factor_.At(i, j); }
+
   void Factor() { factor_.Factor(); }
 
   /// x := A^-1 x, after Factor().
-  void Solve(double* x) const { factor_.Solve(x); }
+  void Solve(float* x) const { factor_.Solve(x); }
 
  private:
   void ListPoints(const Tissue& tissue);

@@ -49,11 +49,6 @@ double IncrementalPotential::Evaluate(const Field& y, Field& gradient, Norms& no
   return energy + 0.5 * sum.inertia;
 }
 
-void IncrementalPotential::Linearise(const Field& y) {
-  elastic_.Linearise(y, true);
-  for (ForceTerm* term : terms_) term->Linearise(y);
-}
-
 double IncrementalPotential::Product(const SingleField& p, SingleField& q) {
   elastic_.ProductInSlots(p);
   pool_.ForEach(ChunkCount(size(), kParticlesPerChunk), [&](int c) {

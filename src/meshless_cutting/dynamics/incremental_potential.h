@@ -33,12 +33,12 @@ class IncrementalPotential {
   /// E(y), J; gradient, N. Infinite where a term is.
   double Evaluate(const Field& y, Field& gradient, Norms& norms);
 
-  /// Fixes the tangent H at y, positive definite on the free particles.
-  void Linearise(const Field& y);
-
-  /// As Linearise, but the elastic term's tangent is the true one, which may have negative curvature. After
-  /// Linearise(y).
-  void LineariseExactly(const Field& y) { elastic_.Linearise(y, false); }
+  /// Fix the tangent H at y. That of the elastic term is positive definite on the free particles if `filtered`, or else
+  /// the true one, which may have negative curvature.
+  void LineariseTerms(const Field& y) {
+    for (ForceTerm* term : terms_) term->Linearise(y);
+  }
+  void LineariseElastic(const Field& y, bool filtered) { elastic_.Linearise(y, filtered); }
 
   /// q = H p for p that is zero where not free; returns p . q. In single precision, but for the terms besides
   /// elasticity.

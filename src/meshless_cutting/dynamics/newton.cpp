@@ -11,12 +11,15 @@ namespace {
 
 /// Conjugate gradients stop at this share of the Newton residual: tighter buys nothing while the step is not yet
 /// linear.
-constexpr double kLinearTolerance = 0.1;
+constexpr double kLinearTolerance = 0.2;
 constexpr int kLinearIterations = 200;
 
-/// Below this residual the exact tangent is tried: there it is mostly definite, and Newton's method gains several
-/// digits in a step where a filtered tangent gains half of one.
+/// The true tangent gains several times what a filtered one does, and is mostly definite. Where it was not, it is tried
+/// again in the same step below this residual alone.
 constexpr double kNear = 0.3;
+
+/// The diagonal of the preconditioner serves for so many iterations: it is as dear as three products.
+constexpr int kRefreshEvery = 4;
 
 /// A line search halves at most so often, and takes a step that gives this share of the promised descent.
 constexpr int kHalvings = 20;
@@ -64,14 +67,21 @@ double NewtonSolver::RelativeResidual(double load) const {
   return scale > 0 ? norms_.residual / scale : 0;
 }
 
-int NewtonSolver::SolveLinear(const Field& y, double relative_residual) {
+int NewtonSolver::SolveLinear(const Field& y, double relative_residual, bool refresh) {
   const double tolerance = std::max(kLinearTolerance, 0.5 * tolerance_ / relative_residual);
+  const bool try_true = true_tangent_is_definite_ || relative_residual <= kNear;
+  potential_.LineariseTerms(y);
+  if (refresh || !try_true) potential_.LineariseElastic(y, true);
+  if (refresh) preconditioner_.Refresh(potential_);
+  int iterations = 0;
   bool is_definite = true;
-  if (relative_residual > kNear) return ConjugateGradients(tolerance, is_definite);
-  potential_.LineariseExactly(y);
-  const int iterations = ConjugateGradients(tolerance, is_definite);
-  if (is_definite) return iterations;
-  potential_.Linearise(y);
+  if (try_true) {
+    potential_.LineariseElastic(y, false);
+    iterations = ConjugateGradients(tolerance, is_definite);
+    if (is_definite) return iterations;
+    true_tangent_is_definite_ = false;
+    potential_.LineariseElastic(y, true);
+  }
   return iterations + ConjugateGradients(tolerance, is_definite);
 }
 
@@ -128,10 +138,9 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
       result.verdict = Verdict::kNotConverged;
       return result;
     }
+    const bool refresh = result.newton_iterations % kRefreshEvery == 0;
     ++result.newton_iterations;
-    potential_.Linearise(y);
-    preconditioner_.Refresh(potential_);
-    result.linear_iterations += SolveLinear(y, result.relative_residual);
+    result.linear_iterations += SolveLinear(y, result.relative_residual, refresh);
 
     const double scale = norms_.residual;
     const double slope = scale * SumOver([&](const ParticleRange& range) {

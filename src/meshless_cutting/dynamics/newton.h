@@ -17,7 +17,10 @@ class NewtonSolver {
   void TissueChanged(const Tissue& tissue);
 
   /// Before the first Minimise of a step.
-  void BeginStep(const Tissue& tissue) { preconditioner_.BeginStep(tissue, potential_); }
+  void BeginStep(const Tissue& tissue) {
+    preconditioner_.BeginStep(tissue, potential_);
+    true_tangent_is_definite_ = true;
+  }
   void set_iterations(int iterations) { iterations_ = iterations; }
 
   /// Differences of energies that mean nothing, J.
@@ -57,9 +60,9 @@ class NewtonSolver {
  private:
   static constexpr double kAtStart = 0.1;
 
-  /// The Newton step at y in units of the residual, m/N, with the exact tangent where that proves definite. Returns the
+  /// The Newton step at y in units of the residual, m/N, with the true tangent where that proves definite. Returns the
   /// linear iterations.
-  int SolveLinear(const Field& y, double relative_residual);
+  int SolveLinear(const Field& y, double relative_residual, bool refresh);
   /// is_definite: false if a direction of negative curvature ended the iterations.
   int ConjugateGradients(double relative_tolerance, bool& is_definite);
   /// Sum of what `task` returns for each range of particles, in parallel.
@@ -75,6 +78,7 @@ class NewtonSolver {
   std::vector<double> chunk_sums_;
   IncrementalPotential::Norms norms_;
   double energy_ = 0, energy_rounding_ = 0;
+  bool true_tangent_is_definite_ = true;  // so far in this step
 };
 
 }  // namespace meshless_cutting

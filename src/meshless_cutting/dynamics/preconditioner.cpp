@@ -103,13 +103,12 @@ double Preconditioner::Apply(const SingleField& r, SingleField& z, ThreadPool& p
              r.data(), &coarse_vector_[CoarseMatrix::kFunctions * a]);
   });
   for (std::size_t n = 0; n < coarse_vector_.size(); ++n) {
-    const Vector4 u = Widen(coarse_vector_[n]);
-    for (int i = 0; i < 3; ++i) coarse_unknowns_[3 * n + i] = (&u.x)[i];
+    for (int i = 0; i < 3; ++i) coarse_unknowns_[3 * n + i] = (&coarse_vector_[n].x)[i];
   }
   coarse_.Solve(coarse_unknowns_.data());
   for (std::size_t n = 0; n < coarse_vector_.size(); ++n) {
-    const double* u = &coarse_unknowns_[3 * n];
-    coarse_vector_[n] = Round({u[0], u[1], u[2], 0});
+    const float* u = &coarse_unknowns_[3 * n];
+    coarse_vector_[n] = {u[0], u[1], u[2], 0};
   }
   const int count = static_cast<int>(r.size());
   pool.ForEach(ChunkCount(count, kParticlesPerChunk), [&](int c) {

@@ -43,7 +43,7 @@ class Preconditioner {
   int solves_ = 0;               // since the coarse matrix was made
   double iterations_when_new_ = 0;
   SingleField coarse_vector_;  // CoarseMatrix::kFunctions per aggregate
-  std::vector<double> coarse_unknowns_;
+  std::vector<float> coarse_unknowns_;
   std::vector<double> chunk_sums_;
 };
 
