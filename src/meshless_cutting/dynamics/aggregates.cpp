@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace meshless_cutting {
@@ -72,6 +73,9 @@ void Aggregates::BuildOnce(const Tissue& tissue, const std::vector<double>& free
   const double size = std::max(std::cbrt(volume / std::max(wanted, 1)), 1e-3 * bounds.sizes().maxCoeff());
   // Whole coarse cells along every axis, so that none is a sliver.
   const Eigen::Array3d cells = (bounds.sizes().array() / size).round().max(1.0);
+  // Cells are numbered layer by layer, across first and along the object last, so that each is coupled to few before it.
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return cells[a] < cells[b]; });
 
   cell_.resize(count);
   parent_.resize(count);
@@ -79,7 +83,8 @@ void Aggregates::BuildOnce(const Tissue& tissue, const std::vector<double>& free
   for (int j = 0; j < count; ++j) {
     const Eigen::Array3d share = (tissue.particle_rest[j] - bounds.min()).array() / bounds.sizes().array().max(1e-300);
     const Eigen::Array3d at = (share * cells).floor().min(cells - 1).max(0.0);
-    cell_[j] = free[j] > 0 ? static_cast<int>((at.z() * cells.y() + at.y()) * cells.x() + at.x()) : -1;
+    const double cell = (at[axes[2]] * cells[axes[1]] + at[axes[1]]) * cells[axes[0]] + at[axes[0]];
+    cell_[j] = free[j] > 0 ? static_cast<int>(cell) : -1;
     parent_[j] = j;
   }
   Join(tissue);

@@ -18,7 +18,7 @@ class BlockCholesky {
 
   int size() const { return kBlock * static_cast<int>(first_.size()); }
 
-  /// Entry (i, j) on or below the diagonal, in a block that is held.
+  /// Entry (i, j) in a block that is held: blocks are stored column after column. Above the diagonal none is read.
   double& At(int i, int j) { return entries_[Index(i, j)]; }
   double At(int i, int j) const { return entries_[Index(i, j)]; }
 

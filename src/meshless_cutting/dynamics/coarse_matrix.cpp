@@ -40,9 +40,9 @@ void CoarseMatrix::ListPoints(const Tissue& tissue) {
 }
 
 void CoarseMatrix::Add(int a, int c, int b, int d, const double* block) {
-  const int row = kUnknowns * a + 3 * c, column = kUnknowns * b + 3 * d;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3 && column + j <= row + i; ++j) factor_.At(row + i, column + j) += block[3 * i + j];
+  double* columns = &factor_.At(kUnknowns * a + 3 * c, kUnknowns * b + 3 * d);
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) columns[kUnknowns * j + i] += block[3 * i + j];
   }
 }
 

@@ -82,7 +82,7 @@ void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& argume
       const Share &a = shares[m], &b = shares[n];
       kernels.blocks(arguments, place.batch, place.lane, kFunctions, a.gradient[0], kFunctions, b.gradient[0], blocks);
       for (int c = 0; c < kFunctions; ++c) {
-        for (int d = 0; d < kFunctions; ++d) {
+        for (int d = 0; d < (m == n ? c + 1 : kFunctions); ++d) {
           double* block = blocks + (c * kFunctions + d) * 9;
           const double fitted = a.sum[c] * b.sum[d] / group.support + a.offset[c][0] * b.fit[d][0] +
                                 a.offset[c][1] * b.fit[d][1] + a.offset[c][2] * b.fit[d][2];

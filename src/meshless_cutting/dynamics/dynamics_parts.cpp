@@ -94,6 +94,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
         &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch, &elastic_force}) {
     field->resize(particles);
   }
+  chunk_sums.resize(ChunkCount(particles, kParticlesPerChunk));
   cell = CellOf(tissue);
   light.Build(tissue, cell);
   for (int j = 0; j < particles; ++j) {

@@ -12,6 +12,7 @@
 #include "dynamics/dynamics.h"
 #include "dynamics/elastic_term.h"
 #include "dynamics/explicit_steps.h"
+#include "dynamics/field_loops.h"
 #include "dynamics/fragments.h"
 #include "dynamics/grains.h"
 #include "dynamics/light_particles.h"
@@ -75,6 +76,20 @@ struct Dynamics::Parts {
   /// Of any state; `stored`: its energy of strain, J.
   StepEnergy EnergyOf(const Tissue& tissue, double stored, const Field& x, const Field& v);
 
+  /// task(range) for all particles, in parallel.
+  template <class Task>
+  void ForParticles(const Task& task) {
+    pool.ForEach(ChunkCount(particles, kParticlesPerChunk), [&](int c) { task(ParticleRange(c, particles)); });
+  }
+  /// Sum of what `task` returns for each range of particles, in parallel; the same bits on any number of threads.
+  template <class Task>
+  double SumOver(const Task& task) {
+    ForParticles([&](const ParticleRange& range) { chunk_sums[range.begin / kParticlesPerChunk] = task(range); });
+    double sum = 0;
+    for (double s : chunk_sums) sum += s;
+    return sum;
+  }
+
   // dynamics.cpp
   /// The frame: `steps` equal steps from the start of the frame; false when one of them failed.
   bool SolveSteps(const Tissue& tissue, int steps, AdvanceResult& result);
@@ -115,6 +130,7 @@ struct Dynamics::Parts {
   Field start_position, start_velocity, start_acceleration;  // of the frame
   Field end_position, end_velocity, end_acceleration;        // of the step in progress, until it is accepted
   Field stage, steady, still, scratch;
+  std::vector<double> chunk_sums;
 
   // Of the last EvaluateElastic: at position it serves the next step and the report of the frame as well.
   double elastic_energy = 0;  // J

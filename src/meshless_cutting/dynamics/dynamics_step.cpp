@@ -89,15 +89,16 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
                                                AdvanceResult& result) {
   Prepare(tissue, scheme, velocity, acceleration);
 
-  // Begin where the object already is on its way, or where it goes without forces, or where it is: the lowest. The last
-  // bounds the energy of a step whose iterations run out.
+  // Begin where the object already is on its way, or where it is, which bounds the energy of a step whose iterations run
+  // out; if it is better off there, perhaps where it goes without forces.
   newton.Begin();
   newton.Offer(steady);
   const Field* best = &steady;
   const bool is_driven = !driven_end.empty();
   if (!newton.StartIsConverged(load)) {
-    for (const Field* guess : {&potential.target, &position}) {
-      if (newton.Offer(is_driven ? Held(*guess) : *guess)) best = guess;
+    for (const Field* guess : {&position, &potential.target}) {
+      if (!newton.Offer(is_driven ? Held(*guess) : *guess)) break;
+      best = guess;
     }
   }
   stage = is_driven ? Held(*best) : *best;
@@ -117,18 +118,20 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
   if (solved.verdict == NewtonSolver::Verdict::kFailed) return solved.verdict;
 
   if (!contact || contact->IsFar()) fragments.Balance(newton.residual(), potential.inertia, stage);
-  end_position = position;
-  end_velocity = velocity;
-  end_acceleration = acceleration;
-  for (int j = 0; j < particles; ++j) {
-    if (potential.free[j] > 0) {
-      scheme.Finish(stage[j], end_position[j], end_velocity[j], end_acceleration[j]);
-    } else if (!driven_end.empty()) {
-      const Vector4 way = driven_share * (driven_end[j] - position[j]);
-      end_position[j] = position[j] + way;
-      end_velocity[j] = (1 / scheme.time_step_s()) * way;
+  ForParticles([&](const ParticleRange& range) {
+    for (int j = range.begin; j < range.end; ++j) {
+      end_position[j] = position[j];
+      end_velocity[j] = velocity[j];
+      end_acceleration[j] = acceleration[j];
+      if (potential.free[j] > 0) {
+        scheme.Finish(stage[j], end_position[j], end_velocity[j], end_acceleration[j]);
+      } else if (!driven_end.empty()) {
+        const Vector4 way = driven_share * (driven_end[j] - position[j]);
+        end_position[j] = position[j] + way;
+        end_velocity[j] = (1 / scheme.time_step_s()) * way;
+      }
     }
-  }
+  });
   return solved.verdict;
 }
 
@@ -136,30 +139,34 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
   const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
   const double mass_damping = config.damping ? config.damping->mass_per_s : 0;
   const double inertia = scheme.inertia() + mass_damping * scheme.rate();
-  double reach = 0;
-  for (int j = 0; j < particles; ++j) {
-    const Vector4& x = position[j];
-    if (potential.free[j] == 0) {
-      potential.inertia[j] = 0;
-      potential.target[j] = still[j] = steady[j] = x;
-      if (!driven_end.empty()) {
-        const Vector4 way = driven_share * (driven_end[j] - x);
-        potential.target[j] = steady[j] = x + scheme.stage() * way;
-        still[j] = steady[j] - (1 / (scheme.rate() * scheme.time_step_s())) * way;
-        reach = std::max(reach, Dot(way, way));
+  ForParticles([&](const ParticleRange& range) {
+    double reach = 0;
+    for (int j = range.begin; j < range.end; ++j) {
+      const Vector4& x = position[j];
+      if (potential.free[j] == 0) {
+        potential.inertia[j] = 0;
+        potential.target[j] = still[j] = steady[j] = x;
+        if (!driven_end.empty()) {
+          const Vector4 way = driven_share * (driven_end[j] - x);
+          potential.target[j] = steady[j] = x + scheme.stage() * way;
+          still[j] = steady[j] - (1 / (scheme.rate() * scheme.time_step_s())) * way;
+          reach = std::max(reach, Dot(way, way));
+        }
+        continue;
       }
-      continue;
+      potential.inertia[j] = tissue.particle_mass[j] * inertia;
+      still[j] = scheme.Still(x, v[j], a[j]);
+      steady[j] = scheme.Steady(x, v[j], a[j]);
+      // Gravity and damping proportional to mass are inertia with another target.
+      potential.target[j] = x + (scheme.inertia() / inertia) * (scheme.Target(x, v[j], a[j]) - x) +
+                            (1 / inertia) * gravity + (mass_damping * scheme.rate() / inertia) * (still[j] - x);
+      if (!force.empty()) potential.target[j] += (1 / potential.inertia[j]) * force[j];
+      const Vector4 way = potential.target[j] - x;
+      reach = std::max(reach, Dot(way, way));
     }
-    potential.inertia[j] = tissue.particle_mass[j] * inertia;
-    still[j] = scheme.Still(x, v[j], a[j]);
-    steady[j] = scheme.Steady(x, v[j], a[j]);
-    // Gravity and damping proportional to mass are inertia with another target.
-    potential.target[j] = x + (scheme.inertia() / inertia) * (scheme.Target(x, v[j], a[j]) - x) +
-                          (1 / inertia) * gravity + (mass_damping * scheme.rate() / inertia) * (still[j] - x);
-    if (!force.empty()) potential.target[j] += (1 / potential.inertia[j]) * force[j];
-    const Vector4 way = potential.target[j] - x;
-    reach = std::max(reach, Dot(way, way));
-  }
+    chunk_sums[range.begin / kParticlesPerChunk] = reach;
+  });
+  const double reach = *std::max_element(chunk_sums.begin(), chunk_sums.end());
   StageMotion motion;
   motion.rate = scheme.rate();
   motion.still = &still;
@@ -193,11 +200,14 @@ Dynamics::Parts::StepEnergy Dynamics::Parts::EnergyOf(const Tissue& tissue, doub
                                                       const Field& v) {
   const Vector4 gravity = config.gravity_m_s2 ? Vector4::From(*config.gravity_m_s2) : Vector4();
   StepEnergy energy;
-  energy.total_j = stored;
-  for (int j = 0; j < particles; ++j) {
-    energy.total_j += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
-    if (!force.empty()) energy.total_j -= Dot(force[j], x[j] - position[j]);
-  }
+  energy.total_j = stored + SumOver([&](const ParticleRange& range) {
+    double sum = 0;
+    for (int j = range.begin; j < range.end; ++j) {
+      sum += tissue.particle_mass[j] * (0.5 * Dot(v[j], v[j]) - Dot(gravity, x[j] - position[j]));
+      if (!force.empty()) sum -= Dot(force[j], x[j] - position[j]);
+    }
+    return sum;
+  });
   energy.flight_j = fragments.EnergyOfFlight(tissue.particle_mass, gravity, position, x, v);
   return energy;
 }

@@ -1,7 +1,8 @@
 // The loops over points, for Lanes of any instruction set. Included inside a namespace of internal linkage, after lanes.inl
 // and material_laws.inl.
 
-/// The corners of a box. Modes[m][i] = sum_k H_m(k) x_k,i by the fast Hadamard transform: 24 additions for eight sums.
+/// The corners of a box. Modes[m][i] = sum_k H_m(k) x_k,i by the fast Hadamard transform: 24 additions for eight sums, one
+/// component after the other, so that the eight stay in registers.
 template <bool kCentre, class L>
 struct BoxSupport {
   using Number = typename NumberOf<L>::type;
@@ -19,14 +20,17 @@ struct BoxSupport {
   [[gnu::always_inline]] void Gradient(const Vector* field, L (*modes)[3], L* F) const {
 #pragma GCC unroll 8
     for (int k = 0; k < 8; ++k) LoadParticles(field, particle + k * kLanes, modes[k]);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      L sum[8];
+      for (int k = 0; k < 8; ++k) sum[k] = modes[k][i];
 #pragma GCC unroll 12
-    for (int n = 0; n < 12; ++n) {
-      const int k = kLow[n], bit = kBit[n];
-      for (int i = 0; i < 3; ++i) {
-        const L low = modes[k][i], high = modes[k | bit][i];
-        modes[k][i] = low + high;
-        modes[k | bit][i] = high - low;
+      for (int n = 0; n < 12; ++n) {
+        const L low = sum[kLow[n]], high = sum[kLow[n] | kBit[n]];
+        sum[kLow[n]] = low + high;
+        sum[kLow[n] | kBit[n]] = high - low;
       }
+      for (int k = 0; k < 8; ++k) modes[k][i] = sum[k];
     }
     for (int j = 0; j < 3; ++j) {
       const L c = LoadAs<L>(box + j * kLanes);
@@ -68,14 +72,17 @@ struct BoxSupport {
       for (int i = 0; i < 3; ++i) modes[1 << j][i] = c * P[3 * i + j];
     }
     for (int i = 0; i < 3; ++i) modes[0][i] = s - s;
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      L sum[8];
+      for (int k = 0; k < 8; ++k) sum[k] = modes[k][i];
 #pragma GCC unroll 12
-    for (int n = 0; n < 12; ++n) {
-      const int k = kLow[n], bit = kBit[n];
-      for (int i = 0; i < 3; ++i) {
-        const L low = modes[k][i], high = modes[k | bit][i];
-        modes[k][i] = low - high;
-        modes[k | bit][i] = low + high;
+      for (int n = 0; n < 12; ++n) {
+        const L low = sum[kLow[n]], high = sum[kLow[n] | kBit[n]];
+        sum[kLow[n]] = low - high;
+        sum[kLow[n] | kBit[n]] = low + high;
       }
+      for (int k = 0; k < 8; ++k) modes[k][i] = sum[k];
     }
 #pragma GCC unroll 8
     for (int k = 0; k < 8; ++k) {
