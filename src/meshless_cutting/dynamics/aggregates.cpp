@@ -75,7 +75,7 @@ void Aggregates::BuildOnce(const Tissue& tissue, const std::vector<double>& free
   const Eigen::Array3d cells = (bounds.sizes().array() / size).round().max(1.0);
   // Cells are numbered layer by layer, across first and along the object last, so that each is coupled to few before it.
   std::array<int, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return cells[a] < cells[b]; });
+  std::sort(axes.begin(), axes.end(), [&](int a, int b) { return cells[a] != cells[b] ? cells[a] < cells[b] : a < b; });
 
   cell_.resize(count);
   parent_.resize(count);

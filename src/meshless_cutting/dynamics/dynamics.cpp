@@ -111,7 +111,7 @@ void Dynamics::Tune(const Tuning& tuning, const Tissue& tissue) {
   Parts& p = *parts_;
   if (p.config.gravity_m_s2) p.config.gravity_m_s2 = tuning.gravity_m_s2;
   if (p.config.damping) p.config.damping->mass_per_s = tuning.damping.mass_per_s;
-  if (p.stiffness_damping) p.stiffness_damping->set_beta(tuning.damping.stiffness_s);
+  if (p.config.damping && !p.explicit_steps) p.elastic.SetDamping(tuning.damping.stiffness_s);
   p.newton.set_iterations(tuning.newton_iterations);
   p.WeighLoad(tissue);
   p.asleep = false;

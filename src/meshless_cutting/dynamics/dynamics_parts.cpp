@@ -72,8 +72,8 @@ Dynamics::Parts::Parts(const DynamicsConfig& config_, const Tissue& tissue)
                            viscous ? viscous->instantaneous_shear_pa() : 0);
   if (choice.integrator == Integrator::kExplicit) {
     explicit_steps.emplace(points, terms, potential);
-  } else if (config.damping && config.damping->stiffness_s > 0) {
-    terms.push_back(&stiffness_damping.emplace(config.damping->stiffness_s, points, elastic));
+  } else if (config.damping) {
+    elastic.SetDamping(config.damping->stiffness_s);
   }
 }
 

@@ -18,7 +18,6 @@
 #include "dynamics/light_particles.h"
 #include "dynamics/newton.h"
 #include "dynamics/solver_choice.h"
-#include "dynamics/stiffness_damping_term.h"
 #include "dynamics/strain_limit.h"
 #include "dynamics/time_scheme.h"
 #include "dynamics/viscous_term.h"
@@ -66,6 +65,8 @@ struct Dynamics::Parts {
   NewtonSolver::Verdict Attempt(const Tissue& tissue, const TimeScheme& scheme, int rounds, AdvanceResult& result);
   /// Sets up the step from position with the given velocities and accelerations.
   void Prepare(const Tissue& tissue, const TimeScheme& scheme, const Field& v, const Field& a);
+  /// The potential of the step is no less than this where the object is, J, known without evaluating it.
+  double EnergyToStay();
   /// A copy of y (in scratch) with the held particles where the step wants them.
   Field& Held(const Field& y);
   /// Energy of strain, J; leaves its gradient in elastic_force.
@@ -102,7 +103,6 @@ struct Dynamics::Parts {
   ThreadPool pool;
   ElasticPoints points;
   ElasticTerm elastic;
-  std::optional<StiffnessDampingTerm> stiffness_damping;
   std::optional<ViscousTerm> viscous;
   std::optional<ContactTerm> contact;
   std::vector<ForceTerm*> terms;
@@ -134,6 +134,7 @@ struct Dynamics::Parts {
 
   // Of the last EvaluateElastic: at position it serves the next step and the report of the frame as well.
   double elastic_energy = 0;  // J
+  double elastic_energy_at_start = 0;  // J, of the last EnergyAtStart
   Field elastic_force;        // N, the energy's gradient
   ElasticForceIs elastic_force_is = ElasticForceIs::kOfAnotherState;
 

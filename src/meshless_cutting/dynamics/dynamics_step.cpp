@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dynamics/dynamics_parts.h"
 
@@ -89,17 +90,15 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
                                                AdvanceResult& result) {
   Prepare(tissue, scheme, velocity, acceleration);
 
-  // Begin where the object already is on its way, or where it is, which bounds the energy of a step whose iterations run
-  // out; if it is better off there, perhaps where it goes without forces.
+  // Begin where the object already is on its way, or where it goes without forces, or where it is: the lowest. The last
+  // bounds the energy of a step whose iterations run out, and is where things come to rest.
   newton.Begin();
   newton.Offer(steady);
   const Field* best = &steady;
   const bool is_driven = !driven_end.empty();
   if (!newton.StartIsConverged(load)) {
-    for (const Field* guess : {&position, &potential.target}) {
-      if (!newton.Offer(is_driven ? Held(*guess) : *guess)) break;
-      best = guess;
-    }
+    if (newton.Offer(is_driven ? Held(potential.target) : potential.target)) best = &potential.target;
+    if (newton.energy() > EnergyToStay() && newton.Offer(is_driven ? Held(position) : position)) best = &position;
   }
   stage = is_driven ? Held(*best) : *best;
   newton.BeginStep(tissue);
@@ -175,7 +174,23 @@ void Dynamics::Parts::Prepare(const Tissue& tissue, const TimeScheme& scheme, co
   motion.stage = scheme.stage();
   motion.step_s = scheme.time_step_s();
   motion.elapsed_s = scheme.elapsed_s();
+  elastic.BeginStep(motion);
   for (ForceTerm* term : terms) term->BeginStep(motion);
+}
+
+double Dynamics::Parts::EnergyToStay() {
+  // Known of a second order step, if its other terms are never negative and nothing moves what is held.
+  const bool is_known = choice.integrator == Integrator::kGeneralizedAlpha && !viscous && driven_end.empty();
+  if (!is_known) return -std::numeric_limits<double>::infinity();
+  const double inertia = SumOver([&](const ParticleRange& range) {
+    double sum = 0;
+    for (int j = range.begin; j < range.end; ++j) {
+      const Vector4 way = position[j] - potential.target[j];
+      sum += 0.5 * potential.inertia[j] * Dot(way, way);
+    }
+    return sum;
+  });
+  return elastic_energy_at_start + inertia;
 }
 
 Field& Dynamics::Parts::Held(const Field& y) {
@@ -193,6 +208,7 @@ double Dynamics::Parts::EvaluateElastic(const Field& x, ElasticForceIs of) {
 Dynamics::Parts::StepEnergy Dynamics::Parts::EnergyAtStart(const Tissue& tissue) {
   if (elastic_force_is != ElasticForceIs::kOfPosition) EvaluateElastic(position, ElasticForceIs::kOfPosition);
   elastic_force_is = ElasticForceIs::kOfAnotherState;  // soon
+  elastic_energy_at_start = elastic_energy;
   return EnergyOf(tissue, elastic_energy + (viscous ? viscous->StoredEnergy() : 0), position, velocity);
 }
 

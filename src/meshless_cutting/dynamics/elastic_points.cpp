@@ -65,6 +65,21 @@ double ElasticPoints::EvaluateInSlots(const Field& x) {
     arguments.field = x.data();
     chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate(arguments);
   });
+  return SumOfEnergies();
+}
+
+double ElasticPoints::EvaluateInSlots(const Field& x, const PointDamping& damping) {
+  pool_.ForEach(static_cast<int>(groups_.chunks.size()), [&](int c) {
+    KernelArguments arguments = Arguments(groups_.chunks[c], *damping.tangent);
+    arguments.field = x.data();
+    arguments.still = damping.still->data();
+    arguments.damping = damping.damping;
+    chunk_energy_[c] = kernels_[groups_.chunks[c].group].evaluate_damped(arguments);
+  });
+  return SumOfEnergies();
+}
+
+double ElasticPoints::SumOfEnergies() const {
   double energy = 0;
   for (double e : chunk_energy_) energy += e;
   return energy;

@@ -18,7 +18,7 @@ constexpr int kLinearIterations = 200;
 /// again in the same step below this residual alone.
 constexpr double kNear = 0.3;
 
-/// The diagonal of the preconditioner serves for so many iterations: it is as dear as three products.
+/// The diagonal of the preconditioner serves for so many linear solves: it is as dear as three products.
 constexpr int kRefreshEvery = 4;
 
 /// A line search halves at most so often, and takes a step that gives this share of the promised descent.
@@ -36,6 +36,7 @@ constexpr double kEnergyRounding = 1e-13;
 void NewtonSolver::TissueChanged(const Tissue& tissue) {
   const int particles = tissue.particle_count();
   preconditioner_.TissueChanged(tissue, potential_);
+  solves_since_refresh_ = kRefreshEvery;
   for (Field* field : {&gradient_, &trial_, &trial_gradient_}) field->resize(particles);
   for (SingleField* field : {&step_, &residual_, &scaled_, &direction_, &product_}) field->resize(particles);
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
@@ -67,9 +68,11 @@ double NewtonSolver::RelativeResidual(double load) const {
   return scale > 0 ? norms_.residual / scale : 0;
 }
 
-int NewtonSolver::SolveLinear(const Field& y, double relative_residual, bool refresh) {
+int NewtonSolver::SolveLinear(const Field& y, double relative_residual) {
   const double tolerance = std::max(kLinearTolerance, 0.5 * tolerance_ / relative_residual);
   const bool try_true = true_tangent_is_definite_ || relative_residual <= kNear;
+  const bool refresh = solves_since_refresh_ >= kRefreshEvery;
+  solves_since_refresh_ = refresh ? 1 : solves_since_refresh_ + 1;
   potential_.LineariseTerms(y);
   if (refresh || !try_true) potential_.LineariseElastic(y, true);
   if (refresh) preconditioner_.Refresh(potential_);
@@ -138,9 +141,8 @@ NewtonSolver::Result NewtonSolver::Minimise(Field& y, double load) {
       result.verdict = Verdict::kNotConverged;
       return result;
     }
-    const bool refresh = result.newton_iterations % kRefreshEvery == 0;
     ++result.newton_iterations;
-    result.linear_iterations += SolveLinear(y, result.relative_residual, refresh);
+    result.linear_iterations += SolveLinear(y, result.relative_residual);
 
     const double scale = norms_.residual;
     const double slope = scale * SumOver([&](const ParticleRange& range) {

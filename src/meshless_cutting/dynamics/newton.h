@@ -51,6 +51,8 @@ class NewtonSolver {
   void Begin();
   /// Evaluates y, and takes it if its energy is finite and lower than that of those before.
   bool Offer(const Field& y);
+  /// Of the place taken, J.
+  double energy() const { return energy_; }
   /// Whether the place taken is so good that nothing need be done. Stricter than Minimise: otherwise a body would hang
   /// off its balance by the tolerance for ever.
   bool StartIsConverged(double load) const {
@@ -62,7 +64,7 @@ class NewtonSolver {
 
   /// The Newton step at y in units of the residual, m/N, with the true tangent where that proves definite. Returns the
   /// linear iterations.
-  int SolveLinear(const Field& y, double relative_residual, bool refresh);
+  int SolveLinear(const Field& y, double relative_residual);
   /// is_definite: false if a direction of negative curvature ended the iterations.
   int ConjugateGradients(double relative_tolerance, bool& is_definite);
   /// Sum of what `task` returns for each range of particles, in parallel.
@@ -79,6 +81,7 @@ class NewtonSolver {
   IncrementalPotential::Norms norms_;
   double energy_ = 0, energy_rounding_ = 0;
   bool true_tangent_is_definite_ = true;  // so far in this step
+  int solves_since_refresh_ = 0;          // of the preconditioner
 };
 
 }  // namespace meshless_cutting

@@ -23,6 +23,10 @@ struct KernelArguments {
   double* tangent = nullptr;        // [batch][tangent_size][lane]
   float* single_tangent = nullptr;  // likewise, if there is no other
   bool filtered = true;             // linearise: positive semidefinite
+
+  // evaluate_damped: damping / 2 way^T K way is added, K the tangent and way = field - still.
+  const Vector4* still = nullptr;
+  double damping = 0;
 };
 
 /// The loops for one material law and one shape of support.
@@ -31,6 +35,7 @@ struct PointKernels {
 
   /// Energy of the points, J, strain and stabilisation; its gradient by each particle goes to the slots, N.
   double (*evaluate)(const KernelArguments&);
+  double (*evaluate_damped)(const KernelArguments&);
   /// The tangent at `field`, if filtered made positive semidefinite.
   void (*linearise)(const KernelArguments&);
   /// Tangent times direction into the slots, N.

@@ -198,7 +198,16 @@ template <class L>
   return LoadAs<L>(&a.group->volume[static_cast<std::size_t>(batch) * kLanes]);
 }
 
-template <class Law, class Support>
+template <class Law, class L>
+[[gnu::always_inline]] inline void LoadTangent(const KernelArguments& a, int batch, L* tangent) {
+  const std::size_t first = static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
+  for (int i = 0; i < Law::kTangentSize; ++i) {
+    tangent[i] = a.tangent != nullptr ? LoadAs<L>(a.tangent + first + i * kLanes)
+                                      : LoadAs<L>(a.single_tangent + first + i * kLanes);
+  }
+}
+
+template <class Law, class Support, bool kDamped>
 double EvaluatePoints(const KernelArguments& a) {
   ClearSlots(a, a.slots);
   const Law law(a.lame.mu, a.lame.lambda);
@@ -209,6 +218,21 @@ double EvaluatePoints(const KernelArguments& a) {
     Lanes modes[Support::kModes][3], F[9], P[9];
     support.Gradient(a.field, modes, F);
     energy += volume * law.Stress(F, P) + support.StabilisationEnergy(modes);
+    if constexpr (kDamped) {
+      Lanes way[Support::kModes][3], dF[9], dP[9], tangent[Law::kTangentSize];
+      support.Gradient(a.still, way, dF);
+      for (int k = 0; k < support.count(); ++k) {
+        for (int i = 0; i < 3; ++i) way[k][i] = modes[k][i] - way[k][i];
+      }
+      for (int i = 0; i < 9; ++i) dF[i] = F[i] - dF[i];
+      LoadTangent<Law>(a, batch, tangent);
+      law.Differential(tangent, dF, dP);
+      energy += a.damping * (0.5 * volume * Dot9(dF, dP) + support.StabilisationEnergy(way));
+      for (int i = 0; i < 9; ++i) P[i] += a.damping * dP[i];
+      for (int k = 0; k < support.count(); ++k) {
+        for (int i = 0; i < 3; ++i) modes[k][i] += a.damping * way[k][i];
+      }
+    }
     for (int i = 0; i < 9; ++i) P[i] *= volume;
     support.Scatter(P, modes, a.slots);
   }
@@ -231,15 +255,6 @@ void LinearisePoints(const KernelArguments& a) {
         Store(tangent[i], a.single_tangent + first + i * kLanes);
       }
     }
-  }
-}
-
-template <class Law, class L>
-[[gnu::always_inline]] inline void LoadTangent(const KernelArguments& a, int batch, L* tangent) {
-  const std::size_t first = static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
-  for (int i = 0; i < Law::kTangentSize; ++i) {
-    tangent[i] = a.tangent != nullptr ? LoadAs<L>(a.tangent + first + i * kLanes)
-                                      : LoadAs<L>(a.single_tangent + first + i * kLanes);
   }
 }
 
@@ -313,7 +328,8 @@ void BlocksOfPoint(const KernelArguments& a, int batch, int lane, int rows, cons
 template <class Law, class Support, class SingleSupport>
 constexpr PointKernels MakePointKernels() {
   return {Law::kTangentSize,
-          EvaluatePoints<Law, Support>,
+          EvaluatePoints<Law, Support, false>,
+          EvaluatePoints<Law, Support, true>,
           LinearisePoints<Law, Support>,
           ProductPoints<Law, Support>,
           SingleProductPoints<Law, SingleSupport>,
