@@ -60,7 +60,7 @@ class NewtonSolver {
   }
 
  private:
-  static constexpr double kAtStart = 0.1;
+  static constexpr double kAtStart = 0.03;
 
   /// The Newton step at y in units of the residual, m/N, with the true tangent where that proves definite. Returns the
   /// linear iterations.
