@@ -138,6 +138,26 @@ TEST_P(ElasticPointsTest, GradientAndProductAreDerivatives) {
   }
 }
 
+TEST_P(ElasticPointsTest, DampingAddsTheTangentTimesTheWay) {
+  for (MaterialModel model : kModels) {
+    ElasticPoints points({model, 1e4, 0.4, 1000}, pool_);
+    points.TissueChanged(tissue_);
+    const Field start = Sum(Positions(Eigen::Matrix3d::Identity()), Random(1), 1e-3);
+    const Field x = Sum(start, Random(1), 1e-4), still = Sum(start, Random(1), 1e-4), way = Sum(x, still, -1);
+    PointTangent tangent;
+    points.Resize(tangent);
+    points.Linearise(start, true, tangent);
+    Field expected = Zero(), force = Zero(), gradient = Zero();
+    const double elastic = points.Evaluate(x, expected);
+    points.AddProduct(tangent, 0.3, way, force);
+    const double energy = points.EvaluateInSlots(x, {&tangent, &still, 0.3});
+    GatherSlots({0, tissue_.particle_count()}, points.slot_sums(), 1, gradient.data());
+    EXPECT_NEAR(energy - elastic, 0.5 * Inner(way, force), 1e-12 * energy);
+    const Field difference = Sum(gradient, Sum(expected, force, 1), -1);
+    EXPECT_LT(std::sqrt(Inner(difference, difference)), 1e-12 * std::sqrt(Inner(gradient, gradient)));
+  }
+}
+
 TEST_P(ElasticPointsTest, ProductIsSymmetricPositiveAndMatchesItsDiagonalAndItsCoarseMatrix) {
   for (MaterialModel model : kModels) {
     ElasticPoints points({model, 1e4, 0.4, 1000}, pool_);
@@ -256,7 +276,7 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
     for (int model = 0; model < 4; ++model) {
       Field first;
       SingleField first_single;
-      double first_energy = 0;
+      double first_energy = 0, first_damped_energy = 0;
       for (const PointKernelTable* table : tables) {
         const PointKernels& kernels = (*table)[model][shape];
         Field slots(3 * groups.slot_count);
@@ -274,6 +294,10 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
         arguments.slots = slots.data() + groups.slot_count;
         kernels.product(arguments);
         const Field d(x.rbegin(), x.rend());
+        arguments.slots = slots.data() + 2 * groups.slot_count;
+        arguments.still = d.data();
+        arguments.damping = 0.3;
+        const double damped_energy = kernels.evaluate_damped(arguments);
         SingleField single_d(d.size()), single_slots(groups.slot_count);
         std::transform(d.begin(), d.end(), single_d.begin(), Round);
         AlignedVector<float> single_tangent(tangent.size());
@@ -287,10 +311,12 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
           first = slots;
           first_single = single_slots;
           first_energy = energy;
+          first_damped_energy = damped_energy;
         }
         EXPECT_EQ(std::memcmp(single_slots.data(), first_single.data(), groups.slot_count * sizeof(SingleVector4)), 0);
         EXPECT_EQ(energy, first_energy);
-        EXPECT_EQ(std::memcmp(slots.data(), first.data(), 2 * groups.slot_count * sizeof(Vector4)), 0);
+        EXPECT_EQ(damped_energy, first_damped_energy);
+        EXPECT_EQ(std::memcmp(slots.data(), first.data(), 3 * groups.slot_count * sizeof(Vector4)), 0);
       }
     }
   }
