@@ -18,9 +18,6 @@ constexpr int kLinearIterations = 200;
 /// again in the same step below this residual alone.
 constexpr double kNear = 0.3;
 
-/// The diagonal of the preconditioner serves for so many linear solves: it is as dear as three products.
-constexpr int kRefreshEvery = 4;
-
 /// A line search halves at most so often, and takes a step that gives this share of the promised descent.
 constexpr int kHalvings = 20;
 constexpr double kSufficientDescent = 1e-4;
@@ -36,7 +33,6 @@ constexpr double kEnergyRounding = 1e-13;
 void NewtonSolver::TissueChanged(const Tissue& tissue) {
   const int particles = tissue.particle_count();
   preconditioner_.TissueChanged(tissue, potential_);
-  solves_since_refresh_ = kRefreshEvery;
   for (Field* field : {&gradient_, &trial_, &trial_gradient_}) field->resize(particles);
   for (SingleField* field : {&step_, &residual_, &scaled_, &direction_, &product_}) field->resize(particles);
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
@@ -71,8 +67,7 @@ double NewtonSolver::RelativeResidual(double load) const {
 int NewtonSolver::SolveLinear(const Field& y, double relative_residual) {
   const double tolerance = std::max(kLinearTolerance, 0.5 * tolerance_ / relative_residual);
   const bool try_true = true_tangent_is_definite_ || relative_residual <= kNear;
-  const bool refresh = solves_since_refresh_ >= kRefreshEvery;
-  solves_since_refresh_ = refresh ? 1 : solves_since_refresh_ + 1;
+  const bool refresh = preconditioner_.IsDue();
   potential_.LineariseTerms(y);
   if (refresh || !try_true) potential_.LineariseElastic(y, true);
   if (refresh) preconditioner_.Refresh(potential_);

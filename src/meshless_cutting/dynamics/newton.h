@@ -81,7 +81,6 @@ class NewtonSolver {
   IncrementalPotential::Norms norms_;
   double energy_ = 0, energy_rounding_ = 0;
   bool true_tangent_is_definite_ = true;  // so far in this step
-  int solves_since_refresh_ = 0;          // of the preconditioner
 };
 
 }  // namespace meshless_cutting

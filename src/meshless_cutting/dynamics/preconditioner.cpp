@@ -11,6 +11,9 @@ namespace {
 constexpr int kAggregates = 40;
 constexpr int kParticlesPerAggregate = 24;
 
+/// The diagonal serves for so many solves: it is as dear as three products.
+constexpr int kRefreshEvery = 4;
+
 /// The coarse matrix is made again when a solve takes kAgeing times the iterations that it took when the matrix was
 /// new, and it has served for so many solves that making it has paid, or when a solve takes kUseless times as many.
 constexpr double kAgeing = 1.5, kUseless = 4;
@@ -34,6 +37,7 @@ SingleBlock InverseOf(const SymmetricBlock& b) {
 
 void Preconditioner::TissueChanged(const Tissue& tissue, const IncrementalPotential& potential) {
   const std::size_t particles = tissue.particle_count(), known = inverse_.size();
+  is_due_ = true;
   diagonal_.resize(particles);
   inverse_.resize(particles);
   chunk_sums_.resize(ChunkCount(tissue.particle_count(), kParticlesPerChunk));
@@ -56,7 +60,7 @@ void Preconditioner::BuildCoarse(const Tissue& tissue, const IncrementalPotentia
   coarse_vector_.resize(static_cast<std::size_t>(coarse_.aggregates().count()) * CoarseMatrix::kFunctions);
   coarse_unknowns_.resize(coarse_.size());
   tissue_changed_ = false;
-  coarse_is_stale_ = true;
+  coarse_is_stale_ = is_due_ = true;
 }
 
 void Preconditioner::RoundBasis() {
@@ -75,6 +79,7 @@ void Preconditioner::RefreshCoarse(IncrementalPotential& potential) {
 
 void Preconditioner::ReportIterations(double per_decade) {
   ++solves_;
+  is_due_ = ++solves_since_refresh_ >= kRefreshEvery;
   if (coarse_is_new_) {
     iterations_when_new_ = per_decade;
     coarse_is_new_ = false;
@@ -85,6 +90,8 @@ void Preconditioner::ReportIterations(double per_decade) {
 }
 
 void Preconditioner::Refresh(IncrementalPotential& potential) {
+  is_due_ = false;
+  solves_since_refresh_ = 0;
   // Since a cut the matrix has a shape that the points no longer fit: it serves until the next step.
   if (coarse_is_stale_ && !tissue_changed_) RefreshCoarse(potential);
   potential.Diagonal(diagonal_);

@@ -19,6 +19,9 @@ class Preconditioner {
   /// Before the solves of a step: new aggregates if it is time for them.
   void BeginStep(const Tissue& tissue, const IncrementalPotential& potential);
 
+  /// Whether the next solve needs Refresh: after some solves, and when the particles or the aggregates are new.
+  bool IsDue() const { return is_due_; }
+
   /// Takes the tangent that `potential` was linearised at last.
   void Refresh(IncrementalPotential& potential);
 
@@ -38,6 +41,8 @@ class Preconditioner {
   AlignedVector<SingleBlock> inverse_;
   SingleField basis_;  // that of the aggregates
   CoarseMatrix coarse_;
+  bool is_due_ = true;
+  int solves_since_refresh_ = 0;
   bool coarse_is_stale_ = true, coarse_is_new_ = false;
   bool tissue_changed_ = false;  // since the aggregates were made
   int solves_ = 0;               // since the coarse matrix was made
