@@ -19,7 +19,7 @@ class NewtonSolver {
   /// Before the first Minimise of a step.
   void BeginStep(const Tissue& tissue) {
     preconditioner_.BeginStep(tissue, potential_);
-    true_tangent_is_definite_ = true;
+    if (cautious_steps_ > 0) --cautious_steps_;
   }
   void set_iterations(int iterations) { iterations_ = iterations; }
 
@@ -60,7 +60,7 @@ class NewtonSolver {
   }
 
  private:
-  static constexpr double kAtStart = 0.03;
+  static constexpr double kAtStart = 0.1;
 
   /// The Newton step at y in units of the residual, m/N, with the true tangent where that proves definite. Returns the
   /// linear iterations.
@@ -80,7 +80,7 @@ class NewtonSolver {
   std::vector<double> chunk_sums_;
   IncrementalPotential::Norms norms_;
   double energy_ = 0, energy_rounding_ = 0;
-  bool true_tangent_is_definite_ = true;  // so far in this step
+  int cautious_steps_ = 0;  // in which the true tangent is tried near the solution alone
 };
 
 }  // namespace meshless_cutting

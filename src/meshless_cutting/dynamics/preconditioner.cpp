@@ -12,7 +12,7 @@ constexpr int kAggregates = 40;
 constexpr int kParticlesPerAggregate = 24;
 
 /// The diagonal serves for so many solves: it is as dear as three products.
-constexpr int kRefreshEvery = 4;
+constexpr int kRefreshEvery = 6;
 
 /// The coarse matrix is made again when a solve takes kAgeing times the iterations that it took when the matrix was
 /// new, and it has served for so many solves that making it has paid, or when a solve takes kUseless times as many.

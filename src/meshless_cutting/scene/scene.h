@@ -155,7 +155,7 @@ enum class Integrator { kGeneralizedAlpha, kImplicitEuler, kQuasiStatic, kExplic
 
 struct SolverConfig {
   Integrator integrator = Integrator::kGeneralizedAlpha;
-  double relative_tolerance = 3e-2;  // Newton stops when the residual has fallen to this share of the step's loads
+  double relative_tolerance = 1e-2;  // Newton stops when the residual has fallen to this share of the step's loads
   int newton_iterations = 4;         // at most, per step
   int threads = 2;                   // the result does not depend on it
   int sub_steps = 1;                 // steps per frame, of time_step_s / sub_steps
