@@ -23,7 +23,8 @@ done
 port=$((20000 + $$ % 20000))
 export ROS_MASTER_URI="http://localhost:$port" ROS_HOSTNAME=localhost
 share="$root/share/meshless_cutting"
-timeout 100 roslaunch -p "$port" meshless_cutting liver.launch scene:="$share/launch/block.yaml" \
+# The block swings: the session begins with the stroke, or where the blade meets it would depend on who started when.
+timeout 100 roslaunch -p "$port" meshless_cutting liver.launch start_with_samples:=true scene:="$share/launch/block.yaml" \
   strokes:="$share/launch/block_strokes.yaml" rviz:=false record:=true bag:="$folder/run.bag" end_with_strokes:=true \
   >"$folder/launch.log" 2>&1 || true
 [ -s "$folder/run.bag" ] || { tail -n 30 "$folder/launch.log"; echo "no bag was recorded"; exit 1; }
