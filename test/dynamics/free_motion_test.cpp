@@ -1,6 +1,7 @@
 // Bodies that nothing holds: what must be conserved.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "dynamics/dynamics.h"
@@ -126,6 +127,27 @@ TEST_P(FreeMotionTest, UndampedVibrationStaysBounded) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FreeMotionTest,
                          testing::Values(Integrator::kGeneralizedAlpha, Integrator::kImplicitEuler));
+
+/// Damping that is switched on later is that of a scene which had it from the start, and off is off.
+TEST(Damping, IsWhatItIsTunedTo) {
+  const Tissue tissue = MakeBoxTissue(Box());
+  const auto shake = [&](double loaded, double tuned) {
+    DynamicsConfig config = Config(Integrator::kGeneralizedAlpha);
+    config.damping = DampingConfig{0, loaded};
+    Dynamics dynamics(config, tissue);
+    dynamics.Tune({Eigen::Vector3d::Zero(), {0, tuned}, config.solver.newton_iterations}, tissue);
+    TissueState state = RestState(tissue);
+    for (int j = 0; j < tissue.particle_count(); ++j) {
+      state.velocity[j] = Eigen::Vector3d(0.3 * std::sin(200 * tissue.particle_rest[j].z()), 0.1, 0);
+    }
+    for (int n = 0; n < 20; ++n) dynamics.Advance(tissue, {}, state);
+    return state.position;
+  };
+  const auto free = shake(0, 0), damped = shake(0.01, 0.01);
+  EXPECT_EQ(shake(0, 0.01), damped);
+  EXPECT_EQ(shake(0.01, 0), free);
+  EXPECT_NE(free, damped);
+}
 
 }  // namespace
 }  // namespace meshless_cutting
