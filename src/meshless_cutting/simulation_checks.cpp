@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -146,6 +147,39 @@ std::string CheckTwins(const SoftBody& body) {
   return {};
 }
 
+std::string CheckHeld(const SoftBody& body) {
+  const Tissue& tissue = body.tissue();
+  const double slack = 1e-9 * body.grid().spacing().maxCoeff();
+  std::vector<bool> reaches(tissue.particle_count(), false);  // material of the particle, into a box that holds its node
+  for (int p = 0; p < tissue.point_count(); ++p)
+    for (int k = 0; k < tissue.support_size; ++k) {
+      const int j = tissue.point_particles[p * tissue.support_size + k];
+      for (const Box& box : body.held()) {
+        if (!box.Holds(tissue.particle_rest[j], slack)) continue;
+        for (int v : body.points().points()[p].vertices)
+          if (box.Holds(body.lattice().vertices[v], slack)) reaches[j] = true;
+      }
+    }
+  struct Node {
+    bool one_reaches = false;
+    int other = -1;  // a particle that is held there and does not reach
+  };
+  std::map<std::array<double, 3>, Node> nodes;  // by place at rest, which twins share
+  for (int j = 0; j < tissue.particle_count(); ++j) {
+    const Eigen::Vector3d& X = tissue.particle_rest[j];
+    Node& node = nodes[{X[0], X[1], X[2]}];
+    if (reaches[j]) {
+      if (!tissue.particle_fixed[j]) return At("not held, though its material reaches into the box: particle", j);
+      node.one_reaches = true;
+    } else if (tissue.particle_fixed[j]) {
+      node.other = j;
+    }
+  }
+  for (const auto& [place, node] : nodes)
+    if (node.one_reaches && node.other >= 0) return At("held by a wall that it does not touch: particle", node.other);
+  return {};
+}
+
 std::string CheckMapping(const SoftBody& body) {
   const VertexMapping& mapping = body.mapping();
   const size_t K = static_cast<size_t>(body.tissue().support_size);
@@ -182,8 +216,8 @@ std::string CheckReproduction(const SoftBody& body) {
 }
 
 std::string CheckBody(const SoftBody& body) {
-  for (const auto& error : {CheckSurfaceClosed(body.surface()), CheckPieces(body), CheckTwins(body), CheckMapping(body),
-                            CheckReproduction(body)})
+  for (const auto& error : {CheckSurfaceClosed(body.surface()), CheckPieces(body), CheckTwins(body), CheckHeld(body),
+                            CheckMapping(body), CheckReproduction(body)})
     if (!error.empty()) return error;
   return {};
 }

@@ -24,6 +24,10 @@ std::string CheckPieces(const SoftBody& body);
 /// inside its support.
 std::string CheckTwins(const SoftBody& body);
 
+/// No piece hangs on a wall that it does not touch: of the twins at a node in a fixed or prescribed box those are held whose
+/// material reaches into the box, and the others only where none does.
+std::string CheckHeld(const SoftBody& body);
+
 /// No vertex is mapped across a cut: the graph joins the vertex to the point within the cells that the point's group
 /// touches.
 std::string CheckMapping(const SoftBody& body);

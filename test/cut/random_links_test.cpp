@@ -16,6 +16,7 @@ ObjectConfig Config(double cell_size, double radius = 0.9) {
   config.cell_size_m = cell_size;
   config.material.density_kg_m3 = 1000;
   config.support_radius_cells = radius;
+  config.fixed = {{{-0.001, -0.001, -0.001}, {0.0101, 0.031, 0.021}}};  // whole layers of nodes: pieces come off beside them
   return config;
 }
 

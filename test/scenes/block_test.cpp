@@ -78,6 +78,24 @@ TEST(Block, FallsInTwoWhenTheBladePasses) {
   EXPECT_GT(height.size(), 20u);
 }
 
+/// A cut in the first layer of cells beside the wall: the nodes of the wall are in reach of what was cut off, its material is not.
+TEST(Block, WhatIsCutOffBesideTheWallFalls) {
+  for (double x : {0.0115, 0.015, 0.0185}) {
+    Scene scene = BlockScene();
+    scene.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);
+    scene.object.slits = {{{x, -0.01, -0.01}, {Eigen::Vector3d(0, 0.06, 0), Eigen::Vector3d(0.001, 0, 0.06)}}};
+    Simulation simulation(scene);
+    ASSERT_EQ(simulation.CheckInvariants(), "");
+    ASSERT_EQ(simulation.surface().fragment_volume_m3.size(), 2u);
+    const double height = Centroid(simulation.surface(), 0)[2];
+    constexpr int kFrames = 20;
+    for (int step = 0; step < kFrames; ++step) simulation.Step();
+    const double t = kFrames * scene.time_step_s;
+    EXPECT_NEAR(height - Centroid(simulation.surface(), 0)[2], 0.5 * 9.81 * t * t, 0.01 * 0.5 * 9.81 * t * t) << "cut at " << x;
+    EXPECT_EQ(simulation.CheckInvariants(), "");
+  }
+}
+
 TEST(Block, HalfAStrokeLeavesOnePieceThatGapes) {
   Scene scene = BlockScene();
   scene.gravity_m_s2 = Eigen::Vector3d(0, 0, -9.81);

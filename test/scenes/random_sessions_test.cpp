@@ -14,16 +14,16 @@ TEST(RandomSessions, MotionStaysPhysical) {
   EXPECT_GT(counts.most_fragments, 3);
 }
 
-TEST(RandomSessions, ASessionThatGetsStuckComesBack) {
-  // In 201 and 225 a large piece hangs on a strand: it does not tear, but is drawn out until no step is found. Without a
-  // last resort the rest of the session stood still.
-  for (std::uint64_t seed : {201, 225}) {
-    SessionCounts counts;
-    SearchSession(seed, 480, counts, true);
-    EXPECT_GT(counts.given_up, 0) << "seed " << seed;
-    EXPECT_LT(counts.given_up, 3) << "seed " << seed;  // in a row
-  }
-  // This one gets through.
+TEST(RandomSessions, WhatIsCutOffBesideTheWallFalls) {
+  // Flakes down to a ten-millionth of a cell, in reach of the wall's nodes, held large pieces until they were drawn out a
+  // hundredfold and no step was found.
+  SessionCounts counts;
+  for (std::uint64_t seed : {201, 225}) EXPECT_EQ(SearchSession(seed, 480, counts), "") << "seed " << seed;
+  for (std::uint64_t seed : {563, 579}) EXPECT_EQ(SearchSession(seed, 240, counts), "") << "seed " << seed;
+}
+
+TEST(RandomSessions, AHardSessionIsPlayedToItsEnd) {
+  // A flake of a cell swings about a neck of a two-hundredth of one: steps are repeated in halves, none is given up.
   SessionCounts counts;
   SearchSession(209, 480, counts, true);
   EXPECT_EQ(counts.given_up, 0);

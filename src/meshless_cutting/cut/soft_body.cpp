@@ -44,7 +44,7 @@ SoftBody::SoftBody(const Lattice& lattice, const ObjectConfig& config, bool can_
       grid_(FitGrid(lattice, config)),
       shape_(grid_, config.support_radius_cells),
       points_(lattice, graph_, grid_),
-      twins_(grid_, shape_, points_, config, tissue_),
+      twins_(lattice, grid_, shape_, points_, config, tissue_),
       mapping_(points_, shape_, tissue_) {
   for (const Eigen::Vector3d& X : tissue_.particle_rest) state_.position.push_back(config.T_WO * X);
   state_.velocity.assign(state_.position.size(), Eigen::Vector3d::Zero());

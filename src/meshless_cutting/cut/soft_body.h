@@ -43,6 +43,8 @@ class SoftBody {
   const ShapeFunctions& shape() const { return shape_; }
   const IntegrationPoints& points() const { return points_; }
   const Tissue& tissue() const { return tissue_; }
+  /// Boxes whose particles are held where their material reaches into them, see Twins.
+  const std::vector<Box>& held() const { return twins_.held(); }
   const TissueState& state() const { return state_; }
   TissueState& mutable_state() { return state_; }
   const VertexMapping& mapping() const { return mapping_; }

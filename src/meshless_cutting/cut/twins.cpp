@@ -17,9 +17,9 @@ constexpr double kBoundaryShift = 1.0 / 16;
 
 }  // namespace
 
-Twins::Twins(const BackgroundGrid& grid, const ShapeFunctions& shape, const IntegrationPoints& points,
-             const ObjectConfig& config, Tissue& tissue)
-    : grid_(&grid), shape_(&shape), points_(&points), materials_(config), held_(config.fixed) {
+Twins::Twins(const Lattice& lattice, const BackgroundGrid& grid, const ShapeFunctions& shape,
+             const IntegrationPoints& points, const ObjectConfig& config, Tissue& tissue)
+    : lattice_(&lattice), grid_(&grid), shape_(&shape), points_(&points), materials_(config), held_(config.fixed) {
   for (const PrescribedRegion& region : config.prescribed) held_.push_back(region.box);
   tissue.support_size = shape.support_size();
   std::vector<int> all(points.points().size()), source;
@@ -75,6 +75,17 @@ void Twins::FillPoint(int p, Tissue& tissue) {
   shape_->Gradients(point.cell, point.centroid, &tissue.point_gradients[static_cast<size_t>(p) * K]);
 }
 
+bool Twins::IsIn(const Box& box, const Eigen::Vector3d& X) const {
+  return box.Holds(X, 1e-9 * grid_->spacing().maxCoeff());
+}
+
+bool Twins::ReachesInto(int point, const std::vector<const Box*>& boxes) const {
+  const std::vector<int>& vertices = points_->points()[point].vertices;
+  return std::any_of(vertices.begin(), vertices.end(), [&](int v) {
+    return std::any_of(boxes.begin(), boxes.end(), [&](const Box* box) { return IsIn(*box, lattice_->vertices[v]); });
+  });
+}
+
 void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
   const int K = tissue.support_size;
   const Eigen::Vector3i c = grid_->NodeCoordinates(node);
@@ -105,30 +116,45 @@ void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
     }
   for (const Member& member : members) member_of_[member.point] = -1;
 
-  std::map<int, double> volume;  // per group
-  for (size_t i = 0; i < members.size(); ++i)
-    volume[find(static_cast<int>(i))] += tissue.point_volume[members[i].point];
-  std::map<int, int> heir;  // particle -> group that keeps it, the largest
-  for (const auto& [root, v] : volume) {
+  struct Group {
+    bool reaches_box = false;
+    double volume = 0;
+  };
+  const Eigen::Vector3d X = grid_->NodePosition(node);
+  std::vector<const Box*> boxes;  // that hold the node
+  for (const Box& box : held_)
+    if (IsIn(box, X)) boxes.push_back(&box);
+  std::map<int, Group> groups;  // by root
+  for (size_t i = 0; i < members.size(); ++i) {
+    Group& group = groups[find(static_cast<int>(i))];
+    group.volume += tissue.point_volume[members[i].point];
+    if (!boxes.empty()) group.reaches_box = group.reaches_box || ReachesInto(members[i].point, boxes);
+  }
+  const bool one_reaches = std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.second.reaches_box; });
+  const auto goes_first = [](const Group& a, const Group& b) {
+    return a.reaches_box != b.reaches_box ? a.reaches_box : a.volume > b.volume;
+  };
+  std::map<int, int> heir;  // particle -> group that keeps it: of those that stay held the largest
+  for (const auto& [root, group] : groups) {
     const int particle = tissue.point_particles[members[root].entry];
     if (particle < 0) continue;
     const auto [at, first] = heir.emplace(particle, root);
-    if (!first && v > volume[at->second]) at->second = root;
+    if (!first && goes_first(group, groups[at->second])) at->second = root;
   }
   std::map<int, int> particle_of;
-  for (const auto& [root, v] : volume) {
+  for (const auto& [root, group] : groups) {
     const int old = tissue.point_particles[members[root].entry];
+    const bool was_held = old < 0 ? !boxes.empty() : tissue.particle_fixed[old] != 0;
+    const bool is_held = was_held && (group.reaches_box || !one_reaches);
     if (old >= 0 && heir[old] == root) {
       particle_of[root] = old;
+      if (!is_held) tissue.particle_fixed[old] = 0;
       continue;
     }
     particle_of[root] = tissue.particle_count();
-    const Eigen::Vector3d X = grid_->NodePosition(node);
     tissue.particle_rest.push_back(X);
     tissue.particle_mass.push_back(0);
-    const double slack = 1e-9 * grid_->spacing().maxCoeff();
-    tissue.particle_fixed.push_back(
-        std::any_of(held_.begin(), held_.end(), [&](const Box& box) { return box.Holds(X, slack); }));
+    tissue.particle_fixed.push_back(is_held);
     source.push_back(old);
   }
   for (size_t i = 0; i < members.size(); ++i) {
