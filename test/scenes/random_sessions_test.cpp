@@ -22,11 +22,12 @@ TEST(RandomSessions, WhatIsCutOffBesideTheWallFalls) {
   for (std::uint64_t seed : {563, 579}) EXPECT_EQ(SearchSession(seed, 240, counts), "") << "seed " << seed;
 }
 
-TEST(RandomSessions, AHardSessionIsPlayedToItsEnd) {
-  // A flake of a cell swings about a neck of a two-hundredth of one: steps are repeated in halves, none is given up.
+TEST(RandomSessions, FlakesOfNextToNoMassStayWhereTheyHang) {
   SessionCounts counts;
-  SearchSession(209, 480, counts, true);
-  EXPECT_EQ(counts.given_up, 0);
+  // The material behind a flake begins beyond a smaller chip.
+  EXPECT_EQ(SearchSession(1019, 240, counts), "");
+  // A flake of a cell swings about a neck of a two-hundredth of one.
+  EXPECT_EQ(SearchSession(209, 480, counts), "");
 }
 
 }  // namespace

@@ -10,6 +10,9 @@ namespace {
 /// Particles that two points share when material goes on from one to the other across a face of the grid.
 constexpr int kFace = 4;
 
+/// How far away, in points, the material behind a flake may begin.
+constexpr int kFarthest = 3;
+
 /// Determinant over cubed trace of their spread, 1/27 for a cube, below which particles lie in a plane.
 constexpr double kFlat = 1e-8;
 
@@ -62,7 +65,8 @@ void LightParticles::ForgetChanged(const Tissue& tissue) {
   for (Follower& follower : followers_) {
     if (follower.own < 0) continue;
     const int* support = &tissue.point_particles[static_cast<std::size_t>(follower.own) * K];
-    if (std::any_of(support, support + K, [&](int s) { return touched_[s] != 0; })) follower = Follower();
+    const bool is_touched = std::any_of(support, support + K, [&](int s) { return touched_[s] != 0; });
+    if (follower.is_far || is_touched) follower = Follower();
   }
   point_particles_ = tissue.point_particles;
   point_volume_ = tissue.point_volume;
@@ -80,29 +84,47 @@ void LightParticles::ListPoints(const Tissue& tissue) {
 }
 
 void LightParticles::FindAnchor(const Tissue& tissue, int particle) {
-  auto& [own, anchor] = followers_[particle];
+  auto& [own, anchor, is_far] = followers_[particle];
   own = anchor = -1;
   for (int i = point_begin_[particle]; i < point_begin_[particle + 1]; ++i) {
     if (own < 0 || tissue.point_volume[points_[i]] > tissue.point_volume[own]) own = points_[i];
   }
-  // The largest point that shares a face with that one and does not hold the particle: material behind the flake.
-  const int* support = &tissue.point_particles[static_cast<std::size_t>(own) * support_];
-  const auto for_each_neighbour = [&](auto&& visit) {
+  // The largest point within reach across faces, larger than that one, that does not hold the particle: material behind the
+  // flake. Mostly a neighbour; a flake that hangs on a smaller one has it farther away.
+  const auto holds = [&](int p) {
+    const int* support = &tissue.point_particles[static_cast<std::size_t>(p) * support_];
+    return std::find(support, support + support_, particle) != support + support_;
+  };
+  double largest = tissue.point_volume[own];
+  reached_.assign(1, own);
+  std::size_t begin = 0;
+  for (int way = 1; way <= kFarthest && anchor < 0; ++way) {
+    const std::size_t end = reached_.size();
+    for (; begin < end; ++begin) ReachNeighbours(tissue, reached_[begin]);
+    for (std::size_t i = end; i < reached_.size(); ++i) {
+      const int p = reached_[i];
+      const double volume = tissue.point_volume[p];
+      if (volume < largest || (volume == largest && (anchor < 0 || p >= anchor)) || holds(p)) continue;
+      anchor = p;
+      largest = volume;
+    }
+    is_far = way > 1;
+  }
+  if (anchor >= 0 && !Fit(tissue, particle)) anchor = -1;
+}
+
+void LightParticles::ReachNeighbours(const Tissue& tissue, int point) {
+  const int* support = &tissue.point_particles[static_cast<std::size_t>(point) * support_];
+  const auto for_each = [&](auto&& visit) {
     for (int k = 0; k < support_; ++k) {
       for (int i = point_begin_[support[k]]; i < point_begin_[support[k] + 1]; ++i) visit(points_[i]);
     }
   };
-  for_each_neighbour([&](int p) { ++shared_[p]; });
-  for (int i = point_begin_[particle]; i < point_begin_[particle + 1]; ++i) shared_[points_[i]] = 0;
-  double largest = tissue.point_volume[own];
-  for_each_neighbour([&, &anchor = anchor](int p) {
-    const double volume = tissue.point_volume[p];
-    if (shared_[p] < kFace || volume < largest || (volume == largest && (anchor < 0 || p >= anchor))) return;
-    anchor = p;
-    largest = volume;
+  for_each([&](int p) { ++shared_[p]; });
+  for (int p : reached_) shared_[p] = 0;
+  for_each([&](int p) {
+    if (std::exchange(shared_[p], 0) >= kFace) reached_.push_back(p);
   });
-  for_each_neighbour([&](int p) { shared_[p] = 0; });
-  if (anchor >= 0 && !Fit(tissue, particle)) anchor = -1;
 }
 
 bool LightParticles::Fit(const Tissue& tissue, int particle) {

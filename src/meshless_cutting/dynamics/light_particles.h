@@ -23,7 +23,8 @@ class LightParticles {
   static constexpr double kShare = 0.05;
   static constexpr double kReach = 0.5;
 
-  /// Finds them and their anchors: those of the last call, but near points that changed since. Allocates only to grow.
+  /// Finds them and their anchors: those of the last call, but near points that changed since and where an anchor is far.
+  /// Allocates only to grow.
   void Build(const Tissue& tissue, double cell_m);
 
   /// After a step. Changes momentum by what light particles carry, nothing else.
@@ -34,13 +35,16 @@ class LightParticles {
  private:
   /// What a particle follows; holds until a point at the particles of `own` changes.
   struct Follower {
-    int own = -1;     // the largest of its points; -1: not looked for
-    int anchor = -1;  // point; -1: none
+    int own = -1;         // the largest of its points; -1: not looked for
+    int anchor = -1;      // point; -1: none
+    bool is_far = false;  // not next to `own`, or none: any change may matter
   };
   /// Forgets whom particles near points that changed since the last call follow.
   void ForgetChanged(const Tissue& tissue);
   void ListPoints(const Tissue& tissue);
   void FindAnchor(const Tissue& tissue, int particle);
+  /// Adds to reached_ what shares a face with a point, each once.
+  void ReachNeighbours(const Tissue& tissue, int point);
   /// The weights by which the affine fit to the particles of its anchor says where a particle is; false: no fit.
   bool Fit(const Tissue& tissue, int particle);
 
@@ -56,6 +60,7 @@ class LightParticles {
   std::vector<std::uint8_t> touched_;  // per particle: at a point that changed
   std::vector<std::pair<double, int>> by_mass_;
   std::vector<int> point_begin_, points_, shared_;  // the points of each particle; per point, particles with another
+  std::vector<int> reached_;                        // of FindAnchor
 };
 
 }  // namespace meshless_cutting
