@@ -31,9 +31,10 @@ BoxTissueConfig Box(bool clamped) {
 
 struct Start {
   const char* name;
-  bool untangles;  // see below
+  int come_back;  // at least so many of kSeeds, see below
   Eigen::Vector3d (*place)(const Eigen::Vector3d& X, std::mt19937& generator);
 };
+constexpr int kSeeds = 8;
 
 double Uniform(std::mt19937& generator) { return std::uniform_real_distribution<double>(-1, 1)(generator); }
 Eigen::Vector3d Noise(std::mt19937& generator) { return {Uniform(generator), Uniform(generator), Uniform(generator)}; }
@@ -41,50 +42,55 @@ Eigen::Vector3d Noise(std::mt19937& generator) { return {Uniform(generator), Uni
 class DegenerateStartTest : public testing::TestWithParam<Start> {};
 
 TEST_P(DegenerateStartTest, StaysFiniteAndComesBack) {
+  const Tissue tissue = MakeBoxTissue(Box(false));
+  const double way = (tissue.particle_rest.back() - tissue.particle_rest.front()).norm();
   for (const Integrator integrator : {Integrator::kGeneralizedAlpha, Integrator::kImplicitEuler}) {
-    const Tissue tissue = MakeBoxTissue(Box(false));
-    DynamicsConfig config;
-    config.material = {MaterialModel::kStableNeoHookean, 1e4, 0.45, 1000};
-    config.damping = DampingConfig{1, 0.02};
-    config.solver = {integrator, 1e-3, 8, 1};
-    Dynamics dynamics(config, tissue);
-    TissueState state = RestState(tissue);
-    std::mt19937 generator(11);
-    for (Eigen::Vector3d& x : state.position) x = GetParam().place(x, generator);
-    ThreadPool pool(1);
-    ElasticPoints points(config.material, pool);
-    points.TissueChanged(tissue);
-    Field x, unused(tissue.particle_count());
-    for (const Eigen::Vector3d& p : state.position) x.push_back(Vector4::From(p));
-    const double start = points.Evaluate(x, unused);
-    AdvanceResult result;
-    for (int n = 0; n < 900; ++n) {
-      result = dynamics.Advance(tissue, {}, state);
-      ASSERT_TRUE(IsFinite(state)) << "step " << n;
+    int came_back = 0;
+    for (unsigned seed = 0; seed < kSeeds; ++seed) {
+      DynamicsConfig config;
+      config.material = {MaterialModel::kStableNeoHookean, 1e4, 0.45, 1000};
+      config.damping = DampingConfig{1, 0.02};
+      config.solver = {integrator, 1e-3, 8, 1};
+      Dynamics dynamics(config, tissue);
+      TissueState state = RestState(tissue);
+      std::mt19937 generator(seed);
+      for (Eigen::Vector3d& x : state.position) x = GetParam().place(x, generator);
+      ThreadPool pool(1);
+      ElasticPoints points(config.material, pool);
+      points.TissueChanged(tissue);
+      Field x, unused(tissue.particle_count());
+      for (const Eigen::Vector3d& p : state.position) x.push_back(Vector4::From(p));
+      const double start = points.Evaluate(x, unused);
+      AdvanceResult result;
+      for (int n = 0; n < 600; ++n) {
+        result = dynamics.Advance(tissue, {}, state);
+        ASSERT_TRUE(IsFinite(state)) << "seed " << seed << ", step " << n;
+      }
+      EXPECT_LT(result.elastic_j, 0.05 * start) << "seed " << seed;
+      // Shape, not only energy: distances are those at rest.
+      const double now = (state.position.back() - state.position.front()).norm();
+      came_back += result.elastic_j < 1e-9 * start && std::abs(now - way) < 0.02 * way;
     }
-    RecordProperty("rest_over_start", std::to_string(result.elastic_j / start));
-    EXPECT_LT(result.elastic_j, (GetParam().untangles ? 1e-9 : 0.05) * start);
-    if (!GetParam().untangles) continue;
-    // Shape, not only energy: distances are those at rest.
-    const double way = (tissue.particle_rest.back() - tissue.particle_rest.front()).norm();
-    EXPECT_NEAR((state.position.back() - state.position.front()).norm(), way, 0.02 * way);
+    RecordProperty(integrator == Integrator::kImplicitEuler ? "implicit_euler" : "generalized_alpha", came_back);
+    EXPECT_GE(came_back, GetParam().come_back);
   }
 }
 
 // With one integration point per cell a knot (neighbouring layers turned by about half a turn against each other) can be a
-// local minimum of the energy: bodies crushed to a line or scrambled over their whole size may keep one, with all cells upright.
+// local minimum of the energy: bodies crushed to a line or scrambled over their whole size may keep one, with all cells upright,
+// and so may some of those that start in a point or as their mirror image: which, is chance.
 // Exactly flat, straight or collapsed states are unstable equilibria by symmetry; a breath of noise is what any scene has.
 INSTANTIATE_TEST_SUITE_P(
     Smith2018, DegenerateStartTest,
     testing::Values(
-        Start{"plane", true, [](const Eigen::Vector3d& X, std::mt19937& g) {
+        Start{"plane", 8, [](const Eigen::Vector3d& X, std::mt19937& g) {
                 return Eigen::Vector3d(X.x(), X.y(), 1e-6 * Uniform(g)); }},
-        Start{"line", false, [](const Eigen::Vector3d& X, std::mt19937& g) {
+        Start{"line", 0, [](const Eigen::Vector3d& X, std::mt19937& g) {
                 return Eigen::Vector3d(X.x(), 1e-6 * Uniform(g), 1e-6 * Uniform(g)); }},
-        Start{"point", true, [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(1e-4 * Noise(g)); }},
-        Start{"scramble", false, [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(0.03 * Noise(g)); }},
-        Start{"shake", true, [](const Eigen::Vector3d& X, std::mt19937& g) { return Eigen::Vector3d(X + 0.01 * Noise(g)); }},
-        Start{"reflection", true, [](const Eigen::Vector3d& X, std::mt19937& g) {
+        Start{"point", 4, [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(1e-4 * Noise(g)); }},
+        Start{"scramble", 0, [](const Eigen::Vector3d&, std::mt19937& g) { return Eigen::Vector3d(0.03 * Noise(g)); }},
+        Start{"shake", 8, [](const Eigen::Vector3d& X, std::mt19937& g) { return Eigen::Vector3d(X + 0.01 * Noise(g)); }},
+        Start{"reflection", 6, [](const Eigen::Vector3d& X, std::mt19937& g) {
                 return Eigen::Vector3d(Eigen::Vector3d(X.x(), X.y(), -X.z()) + 1e-6 * Noise(g)); }}),
     [](const auto& parameter) { return parameter.param.name; });
 
