@@ -257,8 +257,8 @@ void Simulation::Parts::Cut() {
   const size_t fragments_before = body->surface().fragment_volume_m3.size();
   if (!cuts.empty()) {
     const double area_before = body->cut_surface().cut_area();
-    body->Cut(cuts);
-    dynamics->TissueChanged(body->tissue());
+    body->CutMaterial(cuts);
+    dynamics->TissueChanged(body->tissue(), [&] { body->Redraw(cuts); });
     TissueChanged();
     const double area = body->cut_surface().cut_area() - area_before;
     for (auto& state : cutting->tools) {

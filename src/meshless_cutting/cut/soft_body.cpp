@@ -50,51 +50,52 @@ SoftBody::SoftBody(const Lattice& lattice, const ObjectConfig& config, bool can_
   state_.velocity.assign(state_.position.size(), Eigen::Vector3d::Zero());
   state_.acceleration = state_.velocity;
   cut_surface_.WriteTriangles(surface_);
-  MapSurface({}, {}, 0, {});
+  MapSurface({});
   EndAdvance();  // positions of the surface as mapped,
   if (can_be_cut) motion_.emplace(lattice, cut_surface_, mapping_, points_, grid_, shape_, tissue_);
   BeginAdvance();  // where the first window starts
   EndAdvance();
 }
 
-void SoftBody::Cut(const std::vector<LinkCut>& cuts) {
+void SoftBody::CutMaterial(const std::vector<LinkCut>& cuts) {
   std::vector<int> links;
   for (const LinkCut& cut : cuts)
     if (graph_.Cut(cut)) links.push_back(cut.link);
-  const int first_new_vertex = static_cast<int>(cut_surface_.vertices().size());
+  first_new_vertex_ = static_cast<int>(cut_surface_.vertices().size());
   cut_surface_.Update(links);
 
-  const std::vector<int>& changed = points_.Update(cut_surface_, cut_surface_.changed_tetrahedra());
-  motion_->KeepStarts(changed, state_.position);
+  changed_points_ = points_.Update(cut_surface_, cut_surface_.changed_tetrahedra());
+  motion_->KeepStarts(changed_points_, state_.position);
   std::vector<int> source;
-  const std::vector<int>& relinked = twins_.Update(changed, tissue_, source);
+  relinked_points_ = twins_.Update(changed_points_, tissue_, source);
   for (int from : source)
     for (auto* values : {&state_.position, &state_.velocity, &state_.acceleration}) values->push_back((*values)[from]);
+}
 
+void SoftBody::Redraw(const std::vector<LinkCut>& cuts) {
   cut_surface_.WriteTriangles(surface_);
-  const std::vector<int> redrawn = MapSurface(changed, relinked, first_new_vertex, cuts);
-  motion_->Remap(relinked, redrawn);
+  const std::vector<int> redrawn = MapSurface(cuts);
+  motion_->Remap(relinked_points_, redrawn);
 }
 
 // Who is mapped anew (section 2.3): new vertices, the ends of cut links, and vertices on points that changed.
-std::vector<int> SoftBody::MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points,
-                                      int first_new_vertex, const std::vector<LinkCut>& cuts) {
+std::vector<int> SoftBody::MapSurface(const std::vector<LinkCut>& cuts) {
   const auto& vertices = cut_surface_.vertices();
   const int count = static_cast<int>(vertices.size());
   std::vector<int> affected;
-  for (int v = first_new_vertex; v < count; ++v) {
+  for (int v = first_new_vertex_; v < count; ++v) {
     mapping_.Add(vertices[v].rest, vertices[v].anchor);
     surface_.rest_positions.push_back(vertices[v].rest);
     surface_.positions.emplace_back();
     affected.push_back(v);
   }
-  for (int p : changed_points) affected.insert(affected.end(), mapping_.OnPoint(p).begin(), mapping_.OnPoint(p).end());
+  for (int p : changed_points_) affected.insert(affected.end(), mapping_.OnPoint(p).begin(), mapping_.OnPoint(p).end());
   for (const LinkCut& cut : cuts)
     for (int end : lattice_->links[cut.link])
       if (const int v = cut_surface_.VertexOf(end); v >= 0) affected.push_back(v);
   std::sort(affected.begin(), affected.end());
   affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
-  for (int p : relinked_points)
+  for (int p : relinked_points_)
     for (int v : mapping_.OnPoint(p)) mapping_.Refresh(v);
 
   slot_.resize(vertices.size(), -1);

@@ -26,7 +26,13 @@ class SoftBody {
   SoftBody& operator=(const SoftBody&) = delete;
 
   /// Step 3 of the frame. Cuts the links (each not cut before) and brings surface, points, twins and mapping after it.
-  void Cut(const std::vector<LinkCut>& cuts);
+  void Cut(const std::vector<LinkCut>& cuts) {
+    CutMaterial(cuts);
+    Redraw(cuts);
+  }
+  /// Its two halves: what the dynamics reads, and what is drawn. The second may run beside Dynamics::TissueChanged().
+  void CutMaterial(const std::vector<LinkCut>& cuts);
+  void Redraw(const std::vector<LinkCut>& cuts);
 
   /// The crossing window that EndAdvance() opened has been searched; call before Cut().
   void CloseWindow();
@@ -57,8 +63,7 @@ class SoftBody {
 
  private:
   /// Returns the drawn vertices that were mapped anew, sorted.
-  std::vector<int> MapSurface(const std::vector<int>& changed_points, const std::vector<int>& relinked_points,
-                              int first_new_vertex, const std::vector<LinkCut>& cuts);
+  std::vector<int> MapSurface(const std::vector<LinkCut>& cuts);
   void FindFragments();
 
   const Lattice* lattice_;
@@ -73,6 +78,9 @@ class SoftBody {
   VertexMapping mapping_;
   Surface surface_;
   std::vector<int> point_fragment_;
+  // Of the last CutMaterial(): points that changed, those whose particles did, and the first drawn vertex that is new.
+  std::vector<int> changed_points_, relinked_points_;
+  int first_new_vertex_ = 0;
   std::vector<int> slot_;  // scratch of MapSurface: per drawn vertex, -1 between calls
   std::optional<LatticeMotion> motion_;
   std::vector<Eigen::Vector3d> particles_t0_, surface_t0_;  // start of the next crossing window

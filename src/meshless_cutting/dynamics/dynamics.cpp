@@ -81,7 +81,9 @@ Dynamics::Dynamics(const DynamicsConfig& config, const Tissue& tissue)
 
 Dynamics::~Dynamics() = default;
 
-void Dynamics::TissueChanged(const Tissue& tissue) { parts_->TissueChanged(tissue); }
+void Dynamics::TissueChanged(const Tissue& tissue, const std::function<void()>& beside) {
+  parts_->TissueChanged(tissue, beside);
+}
 
 void Dynamics::SetDriven(const std::vector<int>& particles, const std::vector<Eigen::Vector3d>& at_end) {
   for (std::size_t i = 0; i < particles.size() && parts_->asleep; ++i) {

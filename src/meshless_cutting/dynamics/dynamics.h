@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,8 +61,9 @@ class Dynamics {
   Dynamics(const DynamicsConfig& config, const Tissue& tissue);
   ~Dynamics();
 
-  /// Call after the tissue changed (a cut); re-indexes, sizes buffers.
-  void TissueChanged(const Tissue& tissue);
+  /// Call after the tissue changed (a cut); re-indexes, sizes buffers. `beside`: work that does not change the tissue, done
+  /// at the same time; does not throw.
+  void TissueChanged(const Tissue& tissue, const std::function<void()>& beside = [] {});
 
   /// From the next step on. The tissue is that of the last TissueChanged().
   void Tune(const Tuning& tuning, const Tissue& tissue);

@@ -77,17 +77,26 @@ Dynamics::Parts::Parts(const DynamicsConfig& config_, const Tissue& tissue)
   }
 }
 
-void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
+void Dynamics::Parts::TissueChanged(const Tissue& tissue, const std::function<void()>& beside) {
   particles = tissue.particle_count();
   skin_changed = true;
   asleep = false;
   elastic_force_is = ElasticForceIs::kOfAnotherState;
-  points.TissueChanged(tissue);
-  elastic.TissueChanged();
+  cell = CellOf(tissue);
+  pool.ForEach(4, [&](int task) {  // the dearest first
+    if (task == 0) beside();
+    if (task == 1) {
+      fragments.Build(tissue);
+      grains.Build(tissue, fragments);
+    }
+    if (task == 2) {
+      points.TissueChanged(tissue);
+      elastic.TissueChanged();
+    }
+    if (task == 3) light.Build(tissue, cell);
+  });
   for (ForceTerm* term : terms) term->TissueChanged(particles);
   if (viscous) viscous->TissueChanged(tissue);
-  fragments.Build(tissue);
-  grains.Build(tissue, fragments);
   potential.Resize(particles);
   for (Field* field :
        {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration, &end_position,
@@ -95,8 +104,6 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue) {
     field->resize(particles);
   }
   chunk_sums.resize(ChunkCount(particles, kParticlesPerChunk));
-  cell = CellOf(tissue);
-  light.Build(tissue, cell);
   for (int j = 0; j < particles; ++j) {
     // A particle without mass is one that all its points have left for a twin.
     potential.free[j] = !tissue.particle_fixed[j] && tissue.particle_mass[j] > 0 ? 1 : 0;

@@ -5,6 +5,7 @@
 //   dynamics.cpp        the frame: steps, halves, the state in and out
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct Dynamics::Parts {
   Parts(const DynamicsConfig& config, const Tissue& tissue);
 
   // dynamics_parts.cpp
-  void TissueChanged(const Tissue& tissue);
+  void TissueChanged(const Tissue& tissue, const std::function<void()>& beside);
   void WeighLoad(const Tissue& tissue);
   /// How much each piece counts in residuals; before WeighLoad.
   void WeighFragments(const Tissue& tissue);
