@@ -18,11 +18,7 @@ constexpr int kLastRounds = 6;
 /// One of implicit Euler, the last that is tried, is taken if it ends with less than so many times.
 constexpr double kEnergyBurst = 4;
 
-/// One that leaves so much of the forces gets as many iterations again. What is left over adds up from step to step: with 0.3
-/// session 209 has 43 frames of more than 8 iterations until one is repeated in halves, with 0.1 it has 15 and gets through.
-constexpr double kUnfinished = 0.1;
-
-/// One that then leaves so much counts as bad: a body that is turned inside out, say, or a piece that spins faster than the
+/// One that leaves so much of the forces counts as bad: a body that is turned inside out, say, or a piece that spins faster than the
 /// scheme can follow, whose unbalanced steps would blow it up.
 constexpr double kUnbalanced = 0.3;
 
@@ -105,17 +101,9 @@ NewtonSolver::Verdict Dynamics::Parts::Attempt(const Tissue& tissue, const TimeS
   }
   stage = is_driven ? Held(*best) : *best;
   newton.BeginStep(tissue);
-  NewtonSolver::Result solved;
-  for (int round = 0; round < rounds; ++round) {
-    const NewtonSolver::Result of_round = newton.Minimise(stage, load);
-    result.newton_iterations += of_round.newton_iterations;
-    result.linear_iterations += of_round.linear_iterations;
-    solved.relative_residual = of_round.relative_residual;
-    // Where a later round finds no way down, what the earlier ones found is still better than the start.
-    if (round > 0 && of_round.verdict == NewtonSolver::Verdict::kFailed) break;
-    solved.verdict = of_round.verdict;
-    if (solved.verdict != NewtonSolver::Verdict::kNotConverged || solved.relative_residual <= kUnfinished) break;
-  }
+  const NewtonSolver::Result solved = newton.Minimise(stage, load, rounds);
+  result.newton_iterations += solved.newton_iterations;
+  result.linear_iterations += solved.linear_iterations;
   result.relative_residual = solved.relative_residual;
   if (solved.verdict == NewtonSolver::Verdict::kFailed) return solved.verdict;
 

@@ -38,8 +38,9 @@ class NewtonSolver {
   };
 
   /// Minimises from y, the place that was taken last. The residual is measured against the forces in the object: the
-  /// norm of the terms' gradient plus `load`, N, below which nothing is worth moving.
-  Result Minimise(Field& y, double load);
+  /// norm of the terms' gradient plus `load`, N, below which nothing is worth moving. `rounds`: where much is left after the
+  /// iterations, so many times as many.
+  Result Minimise(Field& y, double load, int rounds);
 
   /// Of the last evaluation, see Minimise.
   double RelativeResidual(double load) const;
