@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 
 #include "scenes/session_search.h"
@@ -32,7 +33,13 @@ int main(int argc, char** argv) {
   meshless_cutting::SessionCounts counts;
   long failures = 0;
   for (long n = 0; n < sessions; ++n) {
-    const std::string error = meshless_cutting::SearchSession(seed + n, static_cast<int>(frames), counts, scene);
+    std::string error;
+    try {
+      error = meshless_cutting::SearchSession(seed + n, static_cast<int>(frames), counts, scene);
+    } catch (const std::runtime_error& unreadable) {
+      std::fprintf(stderr, "%s\n", unreadable.what());
+      return 1;
+    }
     if (error.empty()) continue;
     ++failures;
     std::printf("FAILED seed %llu: %s\n", static_cast<unsigned long long>(seed + n), error.c_str());

@@ -134,7 +134,7 @@ void Twins::SplitNode(int node, Tissue& tissue, std::vector<int>& source) {
   const auto goes_first = [](const Group& a, const Group& b) {
     return a.reaches_box != b.reaches_box ? a.reaches_box : a.volume > b.volume;
   };
-  std::map<int, int> heir;  // particle -> group that keeps it: of those that stay held the largest
+  std::map<int, int> heir;  // particle -> group that keeps it: the largest, of those that reach into the box if any does
   for (const auto& [root, group] : groups) {
     const int particle = tissue.point_particles[members[root].entry];
     if (particle < 0) continue;

@@ -33,11 +33,11 @@ class LightParticles {
   int count() const { return static_cast<int>(particles_.size()); }
 
  private:
-  /// What a particle follows; holds until a point at the particles of `own` changes.
+  /// What a particle follows; holds until a point at the particles of `own` changes, a far one until any does.
   struct Follower {
     int own = -1;         // the largest of its points; -1: not looked for
     int anchor = -1;      // point; -1: none
-    bool is_far = false;  // not next to `own`, or none: any change may matter
+    bool is_far = false;  // not next to `own`, or none
   };
   /// Forgets whom particles near points that changed since the last call follow.
   void ForgetChanged(const Tissue& tissue);
