@@ -193,6 +193,13 @@ TEST_P(ElasticPointsTest, ProductIsSymmetricPositiveAndMatchesItsDiagonalAndItsC
     // Z^T H Z e_u for some unknowns u against the column of the matrix.
     const Aggregates& aggregates = coarse.aggregates();
     ASSERT_GT(aggregates.count(), 1);
+    int inside = 0, shared = 0;  // points: the two kinds go different ways into the matrix
+    for (int n = 0; n < aggregates.count(); ++n) {
+      inside += coarse.points_inside_end(n) - coarse.points_begin(n);
+      shared += coarse.points_begin(n + 1) - coarse.points_inside_end(n);
+    }
+    EXPECT_GT(inside, 0);
+    EXPECT_GT(shared, 0);
     for (int unknown : {0, 5, 13, coarse.size() - 1}) {
       Field p = Zero();
       for (std::size_t j = 0; j < x.size(); ++j) {

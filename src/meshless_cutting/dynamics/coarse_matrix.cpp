@@ -37,12 +37,32 @@ void CoarseMatrix::ListPoints(const Tissue& tissue) {
   for (int a = 0; a < aggregates_.count(); ++a) points_begin_[a + 2] += points_begin_[a + 1];
   points_.resize(points_begin_.back());
   walk([&](int a, int p, const int*) { points_[points_begin_[a + 1]++] = p; });
+  points_inside_end_.resize(aggregates_.count());
+  for (int a = 0; a < aggregates_.count(); ++a) {
+    const auto begin = points_.begin() + points_begin_[a], end = points_.begin() + points_begin_[a + 1];
+    const auto inside_end = std::stable_partition(begin, end, [&](int p) {
+      const int* support = &tissue.point_particles[p * K];
+      return std::all_of(support, support + K, [&](int j) { return aggregates_.of_particle[j] == a; });
+    });
+    points_inside_end_[a] = static_cast<int>(inside_end - points_.begin());
+  }
 }
 
 void CoarseMatrix::Add(int a, int c, int b, int d, const double* block) {
   double* columns = &factor_.At(kUnknowns * a + 3 * c, kUnknowns * b + 3 * d);
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 3; ++i) columns[kUnknowns * j + i] += block[3 * i + j];
+  }
+}
+
+void CoarseMatrix::AddAll(int a, int b, double factor, const double (*blocks)[9][kFunctions]) {
+  double* columns = &factor_.At(kUnknowns * a, kUnknowns * b);
+  for (int d = 0; d < kFunctions; ++d) {
+    for (int j = 0; j < 3; ++j, columns += kUnknowns) {
+      for (int c = 0; c < kFunctions; ++c) {
+        for (int i = 0; i < 3; ++i) columns[3 * c + i] += factor * blocks[c][3 * i + j][d];
+      }
+    }
   }
 }
 

@@ -27,9 +27,11 @@ class CoarseMatrix {
 
   void Clear() { factor_.Reset(first_); }
 
-  /// The points that have particles of aggregate a: points()[points_begin(a)] ... points()[points_begin(a + 1) - 1].
+  /// The points that have particles of aggregate a: points()[points_begin(a)] ... points()[points_begin(a + 1) - 1]. Those before
+  /// points_inside_end(a) have no others.
   const std::vector<int>& points() const { return points_; }
   int points_begin(int a) const { return points_begin_[a]; }
+  int points_inside_end(int a) const { return points_inside_end_[a]; }
 
   /// The first aggregate that a is coupled to, <= a.
   int first_coupled(int a) const { return first_[a]; }
@@ -37,6 +39,8 @@ class CoarseMatrix {
   /// Adds the 3 x 3 block (row by row) between function c of a and function d of b, b <= a, first_coupled(a) <= b. Of
   /// the blocks on the diagonal the part above it is ignored.
   void Add(int a, int c, int b, int d, const double* block);
+  /// The same for all functions, blocks[c][3 i + j][d], times `factor`.
+  void AddAll(int a, int b, double factor, const double (*blocks)[9][kFunctions]);
 
   /// Entry (i, j), j <= i, of two coupled aggregates, before Factor().
   double At(int i, int j) const { return factor_.At(i, j); }
@@ -51,7 +55,7 @@ class CoarseMatrix {
 
   Aggregates aggregates_;
   std::vector<int> first_;
-  std::vector<int> points_, points_begin_;
+  std::vector<int> points_, points_begin_, points_inside_end_;
   BlockCholesky factor_;
 };
 

@@ -1,4 +1,4 @@
-// One integration point's share in the coarse matrix.
+// What integration points add to the coarse matrix.
 #pragma once
 
 #include "dynamics/coarse_matrix.h"
@@ -10,5 +10,15 @@ namespace meshless_cutting {
 /// `arguments` must name group and tangent.
 void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& arguments, const PointPlace& place,
                       double factor, int row, CoarseMatrix& matrix);
+
+/// The same for points that have particles of aggregate `row` alone: its functions are affine, so that all of them strain alike
+/// and their stabilisation is nothing. `tensor`: sum of theirs, see PointKernels; `place`: one of them, of `group`.
+void AddCoarseOfTensor(const PointGroup& group, const PointPlace& place, const double (*tensor)[9], double factor, int row,
+                       CoarseMatrix& matrix);
+
+/// The same for all points that have particles of aggregate `row` alone: its functions are affine, so that these points strain
+/// alike and their stabilisation is nothing. `tensor`: sum over them, see PointKernels; `place`: of one of them, of `group`.
+void AddCoarseOfTensor(const PointGroup& group, const PointPlace& place, const double (*tensor)[9], double factor, int row,
+                       CoarseMatrix& matrix);
 
 }  // namespace meshless_cutting

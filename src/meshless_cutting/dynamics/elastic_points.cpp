@@ -155,12 +155,33 @@ void ElasticPoints::AddDiagonal(const Tangent& tangent, double factor, BlockFiel
 
 template <class Tangent>
 void ElasticPoints::AddCoarse(const Tangent& tangent, double factor, CoarseMatrix& matrix) {
+  const std::vector<int>& points = matrix.points();
+  const auto arguments_of = [&](int group) {
+    PointChunk group_only{};
+    group_only.group = group;
+    return Arguments(group_only, tangent);
+  };
   pool_.ForEach(matrix.aggregates().count(), [&](int a) {
-    for (int n = matrix.points_begin(a); n < matrix.points_begin(a + 1); ++n) {
-      const PointPlace& place = groups_.places[matrix.points()[n]];
-      PointChunk group_only{};
-      group_only.group = place.group;
-      AddCoarseOfPoint(kernels_[place.group], Arguments(group_only, tangent), place, factor, a, matrix);
+    const int begin = matrix.points_begin(a), inside_end = matrix.points_inside_end(a);
+    double tensor[9][9] = {};
+    for (int g = 0; g < static_cast<int>(groups_.groups.size()) && begin < inside_end; ++g) {
+      PointPlace places[4 * kLanes];
+      int count = 0;
+      for (int n = begin; n < inside_end; ++n) {
+        const PointPlace& place = groups_.places[points[n]];
+        if (place.group == g) places[count++] = place;
+        if (count == 0 || (count < 4 * kLanes && n + 1 < inside_end)) continue;
+        kernels_[g].add_tensors(arguments_of(g), places, count, tensor);
+        count = 0;
+      }
+    }
+    if (begin < inside_end) {
+      const PointPlace& place = groups_.places[points[begin]];
+      AddCoarseOfTensor(groups_.groups[place.group], place, tensor, factor, a, matrix);
+    }
+    for (int n = inside_end; n < matrix.points_begin(a + 1); ++n) {
+      const PointPlace& place = groups_.places[points[n]];
+      AddCoarseOfPoint(kernels_[place.group], arguments_of(place.group), place, factor, a, matrix);
     }
   });
 }

@@ -82,24 +82,24 @@ MESHLESS_CUTTING_CLONES double AddMaskedAndDot(const ParticleRange& range, const
   return Sum(sum);
 }
 
-MESHLESS_CUTTING_CLONES double AdvanceSolution(const ParticleRange& range, double alpha, const SingleVector4* direction,
-                                               const SingleVector4* product, const double* weight, SingleVector4* step,
-                                               SingleVector4* residual) {
+MESHLESS_CUTTING_CLONES SolutionSums AdvanceSolution(const ParticleRange& range, double alpha,
+                                                     const SingleVector4* direction, const SingleVector4* product,
+                                                     const double* weight, const SingleBlock* inverse,
+                                                     SingleVector4* step, SingleVector4* residual,
+                                                     SingleVector4* scaled) {
   const auto way = static_cast<float>(alpha);
-  WideFour sum = {};
+  WideFour of_residual = {}, of_scaled = {};
   for (int j = range.begin; j < range.end; ++j) {
     Store(Load(step[j]) + way * Load(direction[j]), step[j]);
     const Four r = Load(residual[j]) - way * Load(product[j]);
     Store(r, residual[j]);
-    sum += weight[j] * Widened(r * r);
+    of_residual += weight[j] * Widened(r * r);
+    const SingleBlock& a = inverse[j];
+    const Four s = (r[0] * Load(a.x) + r[1] * Load(a.y)) + r[2] * Load(a.z);
+    Store(s, scaled[j]);
+    of_scaled += Widened(r * s);
   }
-  return Sum(sum);
-}
-
-MESHLESS_CUTTING_CLONES void NextDirection(const ParticleRange& range, double beta, const SingleVector4* scaled,
-                                           SingleVector4* direction) {
-  const auto share = static_cast<float>(beta);
-  for (int j = range.begin; j < range.end; ++j) Store(Load(scaled[j]) + share * Load(direction[j]), direction[j]);
+  return {Sum(of_residual), Sum(of_scaled)};
 }
 
 MESHLESS_CUTTING_CLONES void Restrict(const int* particles, int count, const SingleVector4* basis,
@@ -118,22 +118,19 @@ MESHLESS_CUTTING_CLONES void Restrict(const int* particles, int count, const Sin
   Store(s3, coarse[3]);
 }
 
-MESHLESS_CUTTING_CLONES double ScaleAndProlong(const ParticleRange& range, const SingleBlock* inverse,
-                                               const int* aggregate, const SingleVector4* basis,
-                                               const SingleVector4* coarse, const SingleVector4* r, SingleVector4* z) {
-  WideFour sum = {};
+MESHLESS_CUTTING_CLONES void NextDirection(const ParticleRange& range, double beta, const SingleVector4* scaled,
+                                           const int* aggregate, const SingleVector4* basis,
+                                           const SingleVector4* coarse, SingleVector4* direction) {
+  const auto share = static_cast<float>(beta);
   for (int j = range.begin; j < range.end; ++j) {
-    const SingleBlock& a = inverse[j];
-    const Four v = Load(r[j]), b = Load(basis[j]);
-    Four scaled = (v[0] * Load(a.x) + v[1] * Load(a.y)) + v[2] * Load(a.z);
+    Four z = Load(scaled[j]);
     if (aggregate[j] >= 0) {
+      const Four b = Load(basis[j]);
       const SingleVector4* u = coarse + CoarseMatrix::kFunctions * aggregate[j];
-      scaled += (b[0] * Load(u[0]) + b[1] * Load(u[1])) + (b[2] * Load(u[2]) + b[3] * Load(u[3]));
+      z += (b[0] * Load(u[0]) + b[1] * Load(u[1])) + (b[2] * Load(u[2]) + b[3] * Load(u[3]));
     }
-    Store(scaled, z[j]);
-    sum += Widened(v * scaled);
+    Store(z + share * Load(direction[j]), direction[j]);
   }
-  return Sum(sum);
 }
 
 }  // namespace meshless_cutting

@@ -53,27 +53,27 @@ GradientSums GatherGradient(const ParticleRange& range, const SlotSums& sums, co
 double AddMaskedAndDot(const ParticleRange& range, const double* mask, const Vector4* more, const SingleVector4* p,
                        SingleVector4* q);
 
-/// step += alpha direction, residual -= alpha product; returns the weighted sum of |residual|^2.
-double AdvanceSolution(const ParticleRange& range, double alpha, const SingleVector4* direction,
-                       const SingleVector4* product, const double* weight, SingleVector4* step,
-                       SingleVector4* residual);
-
-/// direction = scaled + beta direction.
-void NextDirection(const ParticleRange& range, double beta, const SingleVector4* scaled, SingleVector4* direction);
-
-/// coarse[c] = sum over the listed particles of basis_c r.
-void Restrict(const int* particles, int count, const SingleVector4* basis, const SingleVector4* r,
-              SingleVector4* coarse);
-
 /// The columns of a symmetric 3 x 3 block.
 struct SingleBlock {
   SingleVector4 x, y, z;
 };
 
-/// z[j] = inverse[j] r[j] + sum_c basis_c(j) coarse[aggregate of j][c], the latter not for particles of none; returns
-/// the sum of r . z.
-double ScaleAndProlong(const ParticleRange& range, const SingleBlock* inverse, const int* aggregate,
-                       const SingleVector4* basis, const SingleVector4* coarse, const SingleVector4* r,
-                       SingleVector4* z);
+/// step += alpha direction, residual -= alpha product, scaled = inverse residual.
+struct SolutionSums {
+  double residual = 0;  // weighted sum of |residual|^2
+  double scaled = 0;    // sum of residual . scaled
+};
+SolutionSums AdvanceSolution(const ParticleRange& range, double alpha, const SingleVector4* direction,
+                             const SingleVector4* product, const double* weight, const SingleBlock* inverse,
+                             SingleVector4* step, SingleVector4* residual, SingleVector4* scaled);
+
+/// coarse[c] = sum over the listed particles of basis_c r.
+void Restrict(const int* particles, int count, const SingleVector4* basis, const SingleVector4* r,
+              SingleVector4* coarse);
+
+/// direction[j] = z + beta direction[j] with z = scaled[j] + sum_c basis_c(j) coarse[aggregate of j][c], the latter not for
+/// particles of none.
+void NextDirection(const ParticleRange& range, double beta, const SingleVector4* scaled, const int* aggregate,
+                   const SingleVector4* basis, const SingleVector4* coarse, SingleVector4* direction);
 
 }  // namespace meshless_cutting

@@ -3,6 +3,7 @@
 
 typedef double Lanes __attribute__((vector_size(8 * kLanes)));
 typedef unsigned long long LaneBits __attribute__((vector_size(8 * kLanes)));
+typedef double FourLanes __attribute__((vector_size(32)));
 typedef float SingleLanes __attribute__((vector_size(4 * kLanes)));
 
 [[gnu::always_inline]] inline Lanes Load(const double* from) {

@@ -43,7 +43,7 @@ void NewtonSolver::TissueChanged(const Tissue& tissue) {
   const int particles = tissue.particle_count();
   preconditioner_.TissueChanged(tissue, potential_);
   for (Field* field : {&gradient_, &trial_, &trial_gradient_}) field->resize(particles);
-  for (SingleField* field : {&step_, &residual_, &scaled_, &direction_, &product_}) field->resize(particles);
+  for (SingleField* field : {&step_, &residual_, &direction_, &product_}) field->resize(particles);
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
 }
 
@@ -96,36 +96,38 @@ int NewtonSolver::ConjugateGradients(double relative_tolerance, bool& is_definit
   const int count = potential_.size();
   ThreadPool& pool = potential_.pool();
   const int chunks = ChunkCount(count, kParticlesPerChunk);
-  for (int j = 0; j < count; ++j) {
-    step_[j] = SingleVector4();
-    residual_[j] = Round((-1 / norms_.residual) * gradient_[j]);
-  }
-  double rz = preconditioner_.Apply(residual_, scaled_, pool);
-  direction_ = scaled_;
+  pool.ForEach(chunks, [&](int c) {
+    const ParticleRange range(c, count);
+    for (int j = range.begin; j < range.end; ++j) {
+      step_[j] = direction_[j] = product_[j] = SingleVector4();
+      residual_[j] = Round((-1 / norms_.residual) * gradient_[j]);
+    }
+    preconditioner_.AdvanceSolution(c, 0, direction_, product_, potential_.weight, step_, residual_);
+  });
+  double rz = preconditioner_.SolveCoarse(), beta = 0;
   const double stop = relative_tolerance * relative_tolerance;
   double reached = 1;
   int iteration = 0;
   while (iteration < kLinearIterations) {
+    pool.ForEach(chunks, [&](int c) { preconditioner_.AdvanceDirection(c, beta, direction_); });
     const double curvature = potential_.Product(direction_, product_);
     ++iteration;
     if (!(curvature > 0) || !std::isfinite(rz)) {
       // Rounding, or a tangent that is not quite definite: what has been gained so far is a direction of descent.
       is_definite = false;
-      if (iteration == 1) step_ = scaled_;
+      if (iteration == 1) step_ = direction_;
       break;
     }
     const double alpha = rz / curvature;
     const double rr = SumOver([&](const ParticleRange& range) {
-      return AdvanceSolution(range, alpha, direction_.data(), product_.data(), potential_.weight.data(), step_.data(),
-                             residual_.data());
+      return preconditioner_.AdvanceSolution(range.begin / kParticlesPerChunk, alpha, direction_, product_,
+                                             potential_.weight, step_, residual_);
     });
     reached = rr;
     if (rr <= stop) break;
-    const double next = preconditioner_.Apply(residual_, scaled_, pool);
-    const double beta = next / rz;
+    const double next = preconditioner_.SolveCoarse();
+    beta = next / rz;
     rz = next;
-    pool.ForEach(chunks,
-                 [&](int c) { NextDirection(ParticleRange(c, count), beta, scaled_.data(), direction_.data()); });
   }
   const double decades = -0.5 * std::log10(std::max(reached, 1e-300));
   preconditioner_.ReportIterations(iteration / std::max(decades, 0.1));

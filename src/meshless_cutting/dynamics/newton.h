@@ -77,7 +77,7 @@ class NewtonSolver {
   int iterations_;
   Preconditioner preconditioner_;
   Field gradient_, trial_, trial_gradient_;
-  SingleField step_, residual_, scaled_, direction_, product_;
+  SingleField step_, residual_, direction_, product_;
   std::vector<double> chunk_sums_;
   IncrementalPotential::Norms norms_;
   double energy_ = 0, energy_rounding_ = 0;

@@ -44,10 +44,12 @@ struct PointKernels {
   void (*single_product)(const KernelArguments&);
   /// The 3 x 3 blocks of the diagonal, N/m: two buffers' worth, first xx yy zz, then xy xz yz.
   void (*diagonal)(const KernelArguments&);
-  /// All blocks g_a (d2Psi / dF_ia dF_lb) h_b of one point, times its volume, for `rows` vectors g and `columns`
-  /// vectors h, three numbers each: blocks[(r columns + c) 9], row by row.
-  void (*blocks)(const KernelArguments&, int batch, int lane, int rows, const double* g, int columns, const double* h,
-                 double* blocks);
+  /// Blocks B_cd = g_c,a (d2Psi / dF_ia dF_lb) h_d,b of one point, times its volume, for four vectors g and four h:
+  /// blocks[c][3 i + l][d]. Vectors are given as [component][4].
+  void (*blocks)(const KernelArguments&, const PointPlace& place, const double (*g)[4], const double (*h)[4],
+                 double (*blocks)[9][4]);
+  /// tensor[3 a + b][3 i + l] += d2Psi / dF_ia dF_lb times volume, for points of the group.
+  void (*add_tensors)(const KernelArguments&, const PointPlace* places, int count, double (*tensor)[9]);
 };
 
 /// The fastest that this processor can run.

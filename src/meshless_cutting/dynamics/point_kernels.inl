@@ -307,21 +307,54 @@ void DiagonalOfPoints(const KernelArguments& a) {
   }
 }
 
+/// The tangent of the point in one lane.
+inline double TangentNumber(const KernelArguments& a, int tangent_size, const PointPlace& place, int i) {
+  const std::size_t at = (static_cast<std::size_t>(place.batch) * tangent_size + i) * kLanes + place.lane;
+  return a.tangent != nullptr ? a.tangent[at] : static_cast<double>(a.single_tangent[at]);
+}
+inline double VolumeAt(const KernelArguments& a, const PointPlace& place) {
+  return a.group->volume[static_cast<std::size_t>(place.batch) * kLanes + place.lane];
+}
+
 template <class Law>
-void BlocksOfPoint(const KernelArguments& a, int batch, int lane, int rows, const double* g, int columns,
-                   const double* h, double* blocks) {
+void BlocksOfPoint(const KernelArguments& a, const PointPlace& place, const double (*g)[4], const double (*h)[4],
+                   double (*blocks)[9][4]) {
   const Law law(a.lame.mu, a.lame.lambda);
-  double tangent[Law::kTangentSize];
-  for (int i = 0; i < Law::kTangentSize; ++i) {
-    const std::size_t at = (static_cast<std::size_t>(batch) * Law::kTangentSize + i) * kLanes + lane;
-    tangent[i] = a.tangent != nullptr ? a.tangent[at] : a.single_tangent[at];
+  const FourLanes none = {};
+  FourLanes tangent[Law::kTangentSize], right[3], block[9];
+  for (int i = 0; i < Law::kTangentSize; ++i) tangent[i] = none + TangentNumber(a, Law::kTangentSize, place, i);
+  __builtin_memcpy(right, h, sizeof(right));
+  const double volume = VolumeAt(a, place);
+  for (int c = 0; c < 4; ++c) {
+    const FourLanes left[3] = {none + g[0][c], none + g[1][c], none + g[2][c]};
+    law.Block(tangent, left, right, block);
+    for (int i = 0; i < 9; ++i) block[i] *= volume;
+    __builtin_memcpy(blocks[c], block, sizeof(block));
   }
-  const double volume = a.group->volume[static_cast<std::size_t>(batch) * kLanes + lane];
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c, blocks += 9) {
-      law.Block(tangent, g + 3 * r, h + 3 * c, blocks);
-      for (int i = 0; i < 9; ++i) blocks[i] *= volume;
+}
+
+template <class Law>
+void AddTensorsOfPoints(const KernelArguments& a, const PointPlace* places, int count, double (*tensor)[9]) {
+  const Law law(a.lame.mu, a.lame.lambda);
+  const Lanes none = {};
+  Lanes sum[9][9] = {};
+  for (int begin = 0; begin < count; begin += kLanes) {
+    Lanes tangent[Law::kTangentSize], volume = none;
+    for (int l = 0; l < kLanes; ++l) {
+      const PointPlace& place = places[begin + l < count ? begin + l : begin];
+      for (int i = 0; i < Law::kTangentSize; ++i) tangent[i][l] = TangentNumber(a, Law::kTangentSize, place, i);
+      if (begin + l < count) volume[l] = VolumeAt(a, place);
     }
+    for (int n = 0; n < 9; ++n) {
+      Lanes left[3] = {none, none, none}, right[3] = {none, none, none}, block[9];
+      left[n / 3] += 1.0;
+      right[n % 3] += 1.0;
+      law.Block(tangent, left, right, block);
+      for (int i = 0; i < 9; ++i) sum[n][i] += volume * block[i];
+    }
+  }
+  for (int n = 0; n < 9; ++n) {
+    for (int i = 0; i < 9; ++i) tensor[n][i] += Sum(sum[n][i]);
   }
 }
 
@@ -334,7 +367,8 @@ constexpr PointKernels MakePointKernels() {
           ProductPoints<Law, Support>,
           SingleProductPoints<Law, SingleSupport>,
           DiagonalOfPoints<Law, Support>,
-          BlocksOfPoint<Law>};
+          BlocksOfPoint<Law>,
+          AddTensorsOfPoints<Law>};
 }
 
 // Rows in the order of MaterialModel, columns in that of SupportShape.

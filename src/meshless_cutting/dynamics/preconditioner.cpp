@@ -1,6 +1,7 @@
 #include "dynamics/preconditioner.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "dynamics/field_loops.h"
 
@@ -40,13 +41,14 @@ void Preconditioner::TissueChanged(const Tissue& tissue, const IncrementalPotent
   is_due_ = true;
   diagonal_.resize(particles);
   inverse_.resize(particles);
+  scaled_.resize(particles);
   chunk_sums_.resize(ChunkCount(tissue.particle_count(), kParticlesPerChunk));
   if (known == 0 || particles < known) {
     BuildCoarse(tissue, potential);
     return;
   }
   coarse_.Extend(tissue, potential.free);
-  RoundBasis();
+  PrepareTransfer();
   tissue_changed_ = true;
 }
 
@@ -56,17 +58,32 @@ void Preconditioner::BeginStep(const Tissue& tissue, const IncrementalPotential&
 
 void Preconditioner::BuildCoarse(const Tissue& tissue, const IncrementalPotential& potential) {
   coarse_.Build(tissue, potential.free, std::min(kAggregates, tissue.particle_count() / kParticlesPerAggregate));
-  RoundBasis();
+  PrepareTransfer();
   coarse_vector_.resize(static_cast<std::size_t>(coarse_.aggregates().count()) * CoarseMatrix::kFunctions);
   coarse_unknowns_.resize(coarse_.size());
   tissue_changed_ = false;
   coarse_is_stale_ = is_due_ = true;
 }
 
-void Preconditioner::RoundBasis() {
-  const Field& basis = coarse_.aggregates().basis;
-  basis_.resize(basis.size());
-  std::transform(basis.begin(), basis.end(), basis_.begin(), Round);
+void Preconditioner::PrepareTransfer() {
+  const Aggregates& aggregates = coarse_.aggregates();
+  basis_.resize(aggregates.basis.size());
+  std::transform(aggregates.basis.begin(), aggregates.basis.end(), basis_.begin(), Round);
+  runs_.clear();
+  for (int a = 0; a < aggregates.count(); ++a) {
+    for (int i = aggregates.begin[a]; i < aggregates.begin[a + 1]; ++i) {
+      const int chunk = aggregates.particles[i] / kParticlesPerChunk;
+      if (i == aggregates.begin[a] || runs_.back().chunk != chunk) runs_.push_back({chunk, a, i, i});
+      ++runs_.back().end;
+    }
+  }
+  std::sort(runs_.begin(), runs_.end(), [](const Run& x, const Run& y) {
+    return x.chunk != y.chunk ? x.chunk < y.chunk : x.aggregate < y.aggregate;
+  });
+  run_begin_.assign(chunk_sums_.size() + 1, 0);
+  for (const Run& run : runs_) ++run_begin_[run.chunk + 1];
+  std::partial_sum(run_begin_.begin(), run_begin_.end(), run_begin_.begin());
+  run_sums_.resize(runs_.size() * CoarseMatrix::kFunctions);
 }
 
 void Preconditioner::RefreshCoarse(IncrementalPotential& potential) {
@@ -103,28 +120,45 @@ void Preconditioner::Refresh(IncrementalPotential& potential) {
   });
 }
 
-double Preconditioner::Apply(const SingleField& r, SingleField& z, ThreadPool& pool) {
-  const Aggregates& aggregates = coarse_.aggregates();
-  pool.ForEach(aggregates.count(), [&](int a) {
-    Restrict(&aggregates.particles[aggregates.begin[a]], aggregates.begin[a + 1] - aggregates.begin[a], basis_.data(),
-             r.data(), &coarse_vector_[CoarseMatrix::kFunctions * a]);
-  });
+double Preconditioner::AdvanceSolution(int chunk, double alpha, const SingleField& direction, const SingleField& product,
+                                       const std::vector<double>& weight, SingleField& step, SingleField& r) {
+  const SolutionSums sums = meshless_cutting::AdvanceSolution(
+      ParticleRange(chunk, static_cast<int>(r.size())), alpha, direction.data(), product.data(), weight.data(),
+      inverse_.data(), step.data(), r.data(), scaled_.data());
+  chunk_sums_[chunk] = sums.scaled;
+  const std::vector<int>& particles = coarse_.aggregates().particles;
+  for (int n = run_begin_[chunk]; n < run_begin_[chunk + 1]; ++n) {
+    const Run& run = runs_[n];
+    Restrict(&particles[run.begin], run.end - run.begin, basis_.data(), r.data(),
+             &run_sums_[static_cast<std::size_t>(n) * CoarseMatrix::kFunctions]);
+  }
+  return sums.residual;
+}
+
+double Preconditioner::SolveCoarse() {
+  constexpr int kFunctions = CoarseMatrix::kFunctions;
+  std::fill(coarse_vector_.begin(), coarse_vector_.end(), SingleVector4());
+  for (std::size_t n = 0; n < runs_.size(); ++n) {
+    for (int c = 0; c < kFunctions; ++c) coarse_vector_[kFunctions * runs_[n].aggregate + c] += run_sums_[kFunctions * n + c];
+  }
   for (std::size_t n = 0; n < coarse_vector_.size(); ++n) {
     for (int i = 0; i < 3; ++i) coarse_unknowns_[3 * n + i] = (&coarse_vector_[n].x)[i];
   }
   coarse_.Solve(coarse_unknowns_.data());
+  double sum = 0;
   for (std::size_t n = 0; n < coarse_vector_.size(); ++n) {
     const float* u = &coarse_unknowns_[3 * n];
-    coarse_vector_[n] = {u[0], u[1], u[2], 0};
+    const SingleVector4 solution = {u[0], u[1], u[2], 0};
+    sum += Dot(coarse_vector_[n], solution);
+    coarse_vector_[n] = solution;
   }
-  const int count = static_cast<int>(r.size());
-  pool.ForEach(ChunkCount(count, kParticlesPerChunk), [&](int c) {
-    chunk_sums_[c] = ScaleAndProlong(ParticleRange(c, count), inverse_.data(), aggregates.of_particle.data(),
-                                     basis_.data(), coarse_vector_.data(), r.data(), z.data());
-  });
-  double sum = 0;
   for (double s : chunk_sums_) sum += s;
   return sum;
+}
+
+void Preconditioner::AdvanceDirection(int chunk, double beta, SingleField& direction) const {
+  NextDirection(ParticleRange(chunk, static_cast<int>(direction.size())), beta, scaled_.data(),
+                coarse_.aggregates().of_particle.data(), basis_.data(), coarse_vector_.data(), direction.data());
 }
 
 }  // namespace meshless_cutting

@@ -25,8 +25,16 @@ class Preconditioner {
   /// Takes the tangent that `potential` was linearised at last.
   void Refresh(IncrementalPotential& potential);
 
-  /// z = B r, with z zero where particles are not free; returns r . z.
-  double Apply(const SingleField& r, SingleField& z, ThreadPool& pool);
+  // z = B r, zero where particles are not free, in three parts so that what goes over the particles can be done together with
+  // what else goes over them. The first and the last in parallel, for each chunk of kParticlesPerChunk.
+
+  /// Moves along `direction`, H direction = product, then takes the residual: see field_loops. Returns its weighted square.
+  double AdvanceSolution(int chunk, double alpha, const SingleField& direction, const SingleField& product,
+                         const std::vector<double>& weight, SingleField& step, SingleField& residual);
+  /// Returns r . z.
+  double SolveCoarse();
+  /// direction = z + beta direction, for a chunk.
+  void AdvanceDirection(int chunk, double beta, SingleField& direction) const;
 
   /// How many iterations the last solve took, per factor 10 that it reduced the residual by.
   void ReportIterations(double per_decade);
@@ -35,7 +43,13 @@ class Preconditioner {
   void BuildCoarse(const Tissue& tissue, const IncrementalPotential& potential);
   void RefreshCoarse(IncrementalPotential& potential);
 
-  void RoundBasis();
+  /// After a change of the aggregates.
+  void PrepareTransfer();
+
+  /// Particles of one aggregate in one chunk: those of the aggregates' list in [begin, end).
+  struct Run {
+    int chunk, aggregate, begin, end;
+  };
 
   BlockField diagonal_;
   AlignedVector<SingleBlock> inverse_;
@@ -47,9 +61,13 @@ class Preconditioner {
   bool tissue_changed_ = false;  // since the aggregates were made
   int solves_ = 0;               // since the coarse matrix was made
   double iterations_when_new_ = 0;
-  SingleField coarse_vector_;  // CoarseMatrix::kFunctions per aggregate
+  std::vector<Run> runs_;       // by chunk
+  std::vector<int> run_begin_;  // per chunk, and the end
+  SingleField run_sums_;        // CoarseMatrix::kFunctions per run
+  SingleField coarse_vector_;   // as many per aggregate
   std::vector<float> coarse_unknowns_;
   std::vector<double> chunk_sums_;
+  SingleField scaled_;          // by the diagonal's inverse
 };
 
 }  // namespace meshless_cutting
