@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -284,6 +285,7 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
       Field first;
       SingleField first_single;
       double first_energy = 0, first_damped_energy = 0;
+      std::array<double, 81 + 4 * 9 * 4> first_coarse{};
       for (const PointKernelTable* table : tables) {
         const PointKernels& kernels = (*table)[model][shape];
         Field slots(3 * groups.slot_count);
@@ -291,6 +293,7 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
         arguments.group = &groups.groups[shape];
         arguments.chunk = groups.chunks[0];
         arguments.slot_count = groups.slot_count;
+        arguments.slot_particle = groups.slot_particle.data();
         arguments.lame = LameConstantsOf({kModels[model], 1e4, 0.45, 1000});
         arguments.field = x.data();
         AlignedVector<double> tangent(arguments.group->batches * kernels.tangent_size * kLanes);
@@ -305,6 +308,10 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
         arguments.still = d.data();
         arguments.damping = 0.3;
         const double damped_energy = kernels.evaluate_damped(arguments);
+        std::array<double, 81 + 4 * 9 * 4> coarse{};  // a sum of tensors, then the blocks of one point
+        kernels.add_tensors(arguments, groups.places.data(), 11, reinterpret_cast<double(*)[9]>(coarse.data()));
+        const double g[3][4] = {{1, 0, 2, -1}, {0.5, 3, 0, 1}, {0, 0.1, 1, 1}};
+        kernels.blocks(arguments, groups.places[3], g, g, reinterpret_cast<double(*)[9][4]>(coarse.data() + 81));
         SingleField single_d(d.size()), single_slots(groups.slot_count);
         std::transform(d.begin(), d.end(), single_d.begin(), Round);
         AlignedVector<float> single_tangent(tangent.size());
@@ -319,7 +326,9 @@ TEST(PointKernels, InstructionSetsAgreeToTheBit) {
           first_single = single_slots;
           first_energy = energy;
           first_damped_energy = damped_energy;
+          first_coarse = coarse;
         }
+        EXPECT_EQ(std::memcmp(coarse.data(), first_coarse.data(), sizeof(coarse)), 0);
         EXPECT_EQ(std::memcmp(single_slots.data(), first_single.data(), groups.slot_count * sizeof(SingleVector4)), 0);
         EXPECT_EQ(energy, first_energy);
         EXPECT_EQ(damped_energy, first_damped_energy);

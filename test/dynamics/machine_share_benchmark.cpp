@@ -17,10 +17,10 @@ namespace {
 
 // Operations and least bytes from memory per point of a full cell, stable neo-Hookean, counted in point_kernels.inl:
 // two fast Hadamard transforms 144, gradient and its transpose 18, stabilisation 38, the law 123 (forces) or 261
-// (product), scaling by volume 9, gathered sums 24. Indices of particles and slots 64, volume, box and stabilisation
-// 40, field and result 64; product, in single precision: field and result 32, tangent 56.
+// (product), scaling by volume 9, gathered sums 24. Indices of slots 16, of their particles 6, volume, box and
+// stabilisation 40, field and result 64; product, in single precision: field and result 32, tangent 56.
 constexpr double kForceFlops = 356, kProductFlops = 494;
-constexpr double kForceBytes = 168, kProductBytes = 192;
+constexpr double kForceBytes = 126, kProductBytes = 150;
 
 /// Time of this process's processors: neighbours on a busy machine do not count.
 double ProcessorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

@@ -39,6 +39,7 @@ KernelArguments ElasticPoints::Arguments(const PointChunk& chunk) {
   arguments.slots = slots_.data();
   arguments.single_slots = single_slots_.data();
   arguments.slot_count = groups_.slot_count;
+  arguments.slot_particle = groups_.slot_particle.data();
   return arguments;
 }
 

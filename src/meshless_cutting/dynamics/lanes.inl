@@ -55,12 +55,12 @@ template <class L>
   const Lanes f = m - 1.0;
   const Lanes s = f / (2.0 + f);
   const Lanes z = s * s;
-  const Lanes r =
-      z * (6.666666666666735130e-01 +
-           z * (3.999999999940941908e-01 +
-                z * (2.857142874366239149e-01 +
-                     z * (2.222219843214978396e-01 +
-                          z * (1.818357216161805012e-01 + z * (1.531383769920937332e-01 + z * 1.479819860511658591e-01))))));
+  // The polynomial in two halves that do not wait for each other.
+  const Lanes w = z * z;
+  const Lanes even = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
+  const Lanes odd = z * (6.666666666666735130e-01 +
+                         w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+  const Lanes r = even + odd;
   const Lanes half_square = 0.5 * (f * f);
   return k * 6.93147180369123816490e-01 -
          ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
@@ -86,12 +86,15 @@ template <class L>
 }
 #endif
 
+/// A particle of a chunk, by its slot.
+using Slot = std::uint16_t;
+
 /// The vectors of eight particles, one to a lane.
-[[gnu::always_inline]] inline void LoadParticles(const Vector4* field, const int* particle, Lanes* v) {
+[[gnu::always_inline]] inline void LoadParticles(const Vector4* field, const Slot* slot, Lanes* v) {
 #if defined(MESHLESS_CUTTING_LANES_AVX512)
   // Lanes n and n + 4 share a register until they are transposed: xyz_ xyz_ -> x, y, z.
-  const __m512d a = Pair(field[particle[0]], field[particle[4]]), b = Pair(field[particle[1]], field[particle[5]]);
-  const __m512d c = Pair(field[particle[2]], field[particle[6]]), d = Pair(field[particle[3]], field[particle[7]]);
+  const __m512d a = Pair(field[slot[0]], field[slot[4]]), b = Pair(field[slot[1]], field[slot[5]]);
+  const __m512d c = Pair(field[slot[2]], field[slot[6]]), d = Pair(field[slot[3]], field[slot[7]]);
   const __m512d xz_ab = _mm512_unpacklo_pd(a, b), y_ab = _mm512_unpackhi_pd(a, b);
   const __m512d xz_cd = _mm512_unpacklo_pd(c, d), y_cd = _mm512_unpackhi_pd(c, d);
   const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
@@ -100,17 +103,17 @@ template <class L>
   v[1] = reinterpret_cast<Lanes>(_mm512_permutex2var_pd(y_ab, first, y_cd));
   v[2] = reinterpret_cast<Lanes>(_mm512_permutex2var_pd(xz_ab, second, xz_cd));
 #else
-  const Vector4 &a = field[particle[0]], &b = field[particle[1]], &c = field[particle[2]], &d = field[particle[3]];
-  const Vector4 &e = field[particle[4]], &f = field[particle[5]], &g = field[particle[6]], &h = field[particle[7]];
+  const Vector4 &a = field[slot[0]], &b = field[slot[1]], &c = field[slot[2]], &d = field[slot[3]];
+  const Vector4 &e = field[slot[4]], &f = field[slot[5]], &g = field[slot[6]], &h = field[slot[7]];
   v[0] = Lanes{a.x, b.x, c.x, d.x, e.x, f.x, g.x, h.x};
   v[1] = Lanes{a.y, b.y, c.y, d.y, e.y, f.y, g.y, h.y};
   v[2] = Lanes{a.z, b.z, c.z, d.z, e.z, f.z, g.z, h.z};
 #endif
 }
-[[gnu::always_inline]] inline void LoadParticles(const SingleVector4* field, const int* particle, SingleLanes* v) {
+[[gnu::always_inline]] inline void LoadParticles(const SingleVector4* field, const Slot* slot, SingleLanes* v) {
 #if defined(MESHLESS_CUTTING_LANES_AVX2)
-  const __m256 a = Pair(field[particle[0]], field[particle[4]]), b = Pair(field[particle[1]], field[particle[5]]);
-  const __m256 c = Pair(field[particle[2]], field[particle[6]]), d = Pair(field[particle[3]], field[particle[7]]);
+  const __m256 a = Pair(field[slot[0]], field[slot[4]]), b = Pair(field[slot[1]], field[slot[5]]);
+  const __m256 c = Pair(field[slot[2]], field[slot[6]]), d = Pair(field[slot[3]], field[slot[7]]);
   const __m256 xy_ab = _mm256_unpacklo_ps(a, b), z_ab = _mm256_unpackhi_ps(a, b);
   const __m256 xy_cd = _mm256_unpacklo_ps(c, d), z_cd = _mm256_unpackhi_ps(c, d);
   v[0] = reinterpret_cast<SingleLanes>(_mm256_shuffle_ps(xy_ab, xy_cd, 0x44));
@@ -118,7 +121,7 @@ template <class L>
   v[2] = reinterpret_cast<SingleLanes>(_mm256_shuffle_ps(z_ab, z_cd, 0x44));
 #else
   for (int l = 0; l < kLanes; ++l) {
-    const SingleVector4& x = field[particle[l]];
+    const SingleVector4& x = field[slot[l]];
     v[0][l] = x.x;
     v[1][l] = x.y;
     v[2][l] = x.z;
@@ -127,7 +130,7 @@ template <class L>
 }
 
 /// The reverse: adds lane l of v[0], v[1], v[2] to the vector at to[slot[l]]. Slots may coincide.
-[[gnu::always_inline]] inline void AddParticles(const Lanes* v, const int* slot, Vector4* to) {
+[[gnu::always_inline]] inline void AddParticles(const Lanes* v, const Slot* slot, Vector4* to) {
 #if defined(MESHLESS_CUTTING_LANES_AVX512)
   const __m512d x = reinterpret_cast<__m512d>(v[0]), y = reinterpret_cast<__m512d>(v[1]);
   const __m512d z = reinterpret_cast<__m512d>(v[2]), zero = _mm512_setzero_pd();
@@ -144,7 +147,7 @@ template <class L>
   for (int l : {0, 2, 1, 3, 4, 6, 5, 7}) to[slot[l]] += Vector4{v[0][l], v[1][l], v[2][l], 0};
 #endif
 }
-[[gnu::always_inline]] inline void AddParticles(const SingleLanes* v, const int* slot, SingleVector4* to) {
+[[gnu::always_inline]] inline void AddParticles(const SingleLanes* v, const Slot* slot, SingleVector4* to) {
 #if defined(MESHLESS_CUTTING_LANES_AVX2)
   const __m256 x = reinterpret_cast<__m256>(v[0]), y = reinterpret_cast<__m256>(v[1]);
   const __m256 z = reinterpret_cast<__m256>(v[2]), zero = _mm256_setzero_ps();

@@ -59,11 +59,11 @@ void Resize(PointGroup& group) {
 
 /// Where the n-th of `count` points of a group goes. Along the space-filling curve a chunk is filled lane by lane, not
 /// batch by batch: the points of one batch lie apart, share no particles, and do not wait for each other's sums.
-PointPlace PlaceOf(int group, int n, int count) {
-  constexpr int kPointsPerChunk = kBatchesPerChunk * kLanes;
-  const int chunk = n / kPointsPerChunk, in_chunk = std::min(kPointsPerChunk, count - chunk * kPointsPerChunk);
+PointPlace PlaceOf(int group, int support, int n, int count) {
+  const int points_per_chunk = BatchesPerChunk(support) * kLanes;
+  const int chunk = n / points_per_chunk, in_chunk = std::min(points_per_chunk, count - chunk * points_per_chunk);
   const int batches = (in_chunk + kLanes - 1) / kLanes;
-  return {group, chunk * kBatchesPerChunk + n % kPointsPerChunk % batches, n % kPointsPerChunk / batches};
+  return {group, chunk * BatchesPerChunk(support) + n % points_per_chunk % batches, n % points_per_chunk / batches};
 }
 
 /// Copies the numbers that describe a point from lane 0 of a batch, which is never empty, to lanes without a point: any valid
@@ -164,7 +164,7 @@ void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffne
     const int g = group_of(p);
     const double scale = tissue.support_size * support.h2;
     const double stabilisation = scale > 0 ? stiffness[groups[g].material] * tissue.point_volume[p] / scale : 0;
-    places[p] = PlaceOf(g, groups[g].placed++, counts_[g]);
+    places[p] = PlaceOf(g, tissue.support_size, groups[g].placed++, counts_[g]);
     Put(tissue, p, support, stabilisation, places[p], groups[g]);
   }
   described_rest_ = tissue.point_rest;
@@ -176,8 +176,9 @@ void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffne
 void PointGroups::BuildSlots(int particles) {
   chunks.clear();
   for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
-    for (int begin = 0; begin < groups[g].batches; begin += kBatchesPerChunk) {
-      chunks.push_back({g, begin, std::min(begin + kBatchesPerChunk, groups[g].batches), 0, 0});
+    const int per_chunk = BatchesPerChunk(groups[g].support);
+    for (int begin = 0; begin < groups[g].batches; begin += per_chunk) {
+      chunks.push_back({g, begin, std::min(begin + per_chunk, groups[g].batches), 0, 0});
     }
   }
   // In the order of their particles, so that the threads' stretches of points and of particles lie at the same place.
@@ -195,32 +196,32 @@ void PointGroups::BuildSlots(int particles) {
     return x.second.group != y.second.group ? x.second.group < y.second.group : x.second.begin < y.second.begin;
   });
 
-  slot_particle_.clear();
+  slot_particle.clear();
   slot_of_.assign(particles, -1);
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     PointChunk& chunk = chunks[c] = chunk_order_[c].second;
     PointGroup& group = groups[chunk.group];
-    chunk.first_slot = static_cast<int>(slot_particle_.size());
+    chunk.first_slot = static_cast<int>(slot_particle.size());
     const std::size_t stride = static_cast<std::size_t>(group.support) * kLanes;
     for (std::size_t at = chunk.begin * stride; at < chunk.end * stride; ++at) {
       const int j = group.particle[at];
       if (slot_of_[j] < chunk.first_slot) {
-        slot_of_[j] = static_cast<int>(slot_particle_.size());
-        slot_particle_.push_back(j);
+        slot_of_[j] = static_cast<int>(slot_particle.size());
+        slot_particle.push_back(j);
       }
-      group.slot[at] = slot_of_[j];
+      group.slot[at] = static_cast<std::uint16_t>(slot_of_[j] - chunk.first_slot);
     }
-    chunk.last_slot = static_cast<int>(slot_particle_.size());
+    chunk.last_slot = static_cast<int>(slot_particle.size());
   }
-  const int slots = static_cast<int>(slot_particle_.size());
+  const int slots = static_cast<int>(slot_particle.size());
   slot_count = slots + 1;
 
   // The slots of each particle, in their order, in slot_of_.
   slot_begin_.assign(particles + 1, 0);
-  for (int j : slot_particle_) ++slot_begin_[j + 1];
+  for (int j : slot_particle) ++slot_begin_[j + 1];
   for (int j = 0; j < particles; ++j) slot_begin_[j + 1] += slot_begin_[j];
   slot_of_.resize(slots);
-  for (int slot = slots - 1; slot >= 0; --slot) slot_of_[--slot_begin_[slot_particle_[slot] + 1]] = slot;
+  for (int slot = slots - 1; slot >= 0; --slot) slot_of_[--slot_begin_[slot_particle[slot] + 1]] = slot;
   // Filling from the back moved each end down to the start of its own row, one place too high.
   std::copy(slot_begin_.begin() + 1, slot_begin_.end(), slot_begin_.begin());
   slot_begin_[particles] = slots;

@@ -14,8 +14,12 @@ namespace meshless_cutting {
 /// Points that one instruction works on. The last batch of a group is filled up with copies of a point that weigh nothing.
 constexpr int kLanes = 8;
 
-/// Batches that one task of a parallel loop takes: some microseconds of work, whose sums stay in the first level cache.
-constexpr int kBatchesPerChunk = 32;
+/// Particles that one task of a parallel loop can have at most. It takes some microseconds, and what it reads of the particles
+/// and sums for them stays in the first level cache.
+constexpr int kSlotsPerChunk = 2048;
+
+/// Batches that one task takes.
+constexpr int BatchesPerChunk(int support) { return kSlotsPerChunk / (kLanes * support); }
 
 /// Points of one shape. Arrays are indexed [batch][...][lane]; a lane is a point.
 struct PointGroup {
@@ -27,7 +31,7 @@ struct PointGroup {
 
   std::vector<int> point;             // [batch][lane] index in Tissue; -1 in filling lanes
   std::vector<int> particle;          // [batch][K][lane]; corners of a box in the order of their bits
-  std::vector<int> slot;              // [batch][K][lane]; where the sum for the particle is, see PointGroups
+  std::vector<std::uint16_t> slot;    // [batch][K][lane]; of the particle, counted from the first of the chunk
   AlignedVector<double> volume;         // [batch][lane] V, m^3
   AlignedVector<double> stabilisation;  // [batch][lane] S, N/m: energy S/2 sum_k |x_k - affine fit|^2
 
@@ -39,7 +43,7 @@ struct PointGroup {
 };
 
 /// A stretch of batches of one group: one task of a parallel loop. It sums what it has for a particle in a *slot* of its own, one
-/// per particle that it touches, [first_slot, last_slot).
+/// per particle that it touches, [first_slot, last_slot), and reads the particle's vector from a copy in the same order.
 struct PointChunk {
   int group, begin, end;  // batches
   int first_slot, last_slot;
@@ -62,6 +66,7 @@ struct PointGroups {
   std::vector<PointPlace> places;  // per point of the tissue
   std::vector<PointChunk> chunks;
   int slot_count = 0;  // size of a buffer of slots; the last of them is no chunk's and zero
+  std::vector<int> slot_particle;  // per slot but the last
 
   // Most particles have one slot. Where chunks meet there are more: they are added to the first, in their order.
   std::vector<int> first_slot;       // per particle; the last of all if no point has it
@@ -85,7 +90,7 @@ struct PointGroups {
   std::vector<int> counts_;              // scratch, per group
   std::vector<int> order_;               // points along a space-filling curve
   std::vector<std::uint64_t> curve_;     // place of each point on it
-  std::vector<int> slot_of_, slot_particle_, slot_begin_;
+  std::vector<int> slot_of_, slot_begin_;
   std::vector<std::pair<double, PointChunk>> chunk_order_;
 };
 

@@ -10,16 +10,15 @@ struct BoxSupport {
   static constexpr int kModes = 8;
 
   BoxSupport(const PointGroup& group, int batch)
-      : particle(&group.particle[static_cast<std::size_t>(batch) * 8 * kLanes]),
-        slot(&group.slot[static_cast<std::size_t>(batch) * 8 * kLanes]),
+      : slot(&group.slot[static_cast<std::size_t>(batch) * 8 * kLanes]),
         box(&group.box[static_cast<std::size_t>(batch) * 3 * kLanes]),
         hourglass(kCentre ? nullptr : &group.hourglass[static_cast<std::size_t>(batch) * 12 * kLanes]),
         stiffness(LoadAs<L>(&group.stabilisation[static_cast<std::size_t>(batch) * kLanes])) {}
 
-  /// Modes of a field and its gradient F_ij = sum_k x_k,i g_k,j.
+  /// Modes of a field, given per slot of the chunk, and its gradient F_ij = sum_k x_k,i g_k,j.
   [[gnu::always_inline]] void Gradient(const Vector* field, L (*modes)[3], L* F) const {
 #pragma GCC unroll 8
-    for (int k = 0; k < 8; ++k) LoadParticles(field, particle + k * kLanes, modes[k]);
+    for (int k = 0; k < 8; ++k) LoadParticles(field, slot + k * kLanes, modes[k]);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
       L sum[8];
@@ -110,7 +109,7 @@ struct BoxSupport {
   // The pairs (k, k | bit) of the fast transform.
   static constexpr int kLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
   static constexpr int kBit[12] = {1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4};
-  const int *particle, *slot;
+  const Slot* slot;
   const double *box, *hourglass;
   L stiffness;
 };
@@ -124,7 +123,6 @@ struct GeneralSupport {
 
   GeneralSupport(const PointGroup& group, int batch)
       : K(group.support),
-        particle(&group.particle[static_cast<std::size_t>(batch) * K * kLanes]),
         slot(&group.slot[static_cast<std::size_t>(batch) * K * kLanes]),
         gradient(&group.gradient[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
         fit(&group.fit[static_cast<std::size_t>(batch) * K * 3 * kLanes]),
@@ -136,7 +134,7 @@ struct GeneralSupport {
     for (int i = 0; i < 9; ++i) F[i] = fitted[i] = stiffness - stiffness;
     for (int i = 0; i < 3; ++i) mean[i] = stiffness - stiffness;
     for (int k = 0; k < K; ++k) {
-      LoadParticles(field, particle + k * kLanes, modes[k]);
+      LoadParticles(field, slot + k * kLanes, modes[k]);
       for (int i = 0; i < 3; ++i) mean[i] += modes[k][i];
       for (int j = 0; j < 3; ++j) {
         const L g = LoadAs<L>(gradient + (3 * k + j) * kLanes), f = LoadAs<L>(fit + (3 * k + j) * kLanes);
@@ -184,14 +182,31 @@ struct GeneralSupport {
   }
 
   int K;
-  const int *particle, *slot;
+  const Slot* slot;
   const double *gradient, *fit, *offset;
   L stiffness;
 };
 
+/// A field as a chunk sees it: per slot.
 template <class Vector>
-inline void ClearSlots(const KernelArguments& a, Vector* slots) {
+class ChunkField {
+ public:
+  ChunkField(const KernelArguments& a, const Vector* field) {
+    const int* particle = a.slot_particle + a.chunk.first_slot;
+    const int count = a.chunk.last_slot - a.chunk.first_slot;
+    for (int n = 0; n < count; ++n) __builtin_memcpy(bytes_ + n * sizeof(Vector), field + particle[n], sizeof(Vector));
+  }
+  const Vector* data() const { return reinterpret_cast<const Vector*>(bytes_); }
+
+ private:
+  alignas(64) unsigned char bytes_[kSlotsPerChunk * sizeof(Vector)];  // no vectors, which would be cleared first
+};
+
+/// The slots of a chunk, cleared.
+template <class Vector>
+inline Vector* ClearSlots(const KernelArguments& a, Vector* slots) {
   for (int slot = a.chunk.first_slot; slot < a.chunk.last_slot; ++slot) slots[slot] = Vector();
+  return slots + a.chunk.first_slot;
 }
 template <class L>
 [[gnu::always_inline]] inline L VolumeOf(const KernelArguments& a, int batch) {
@@ -207,20 +222,28 @@ template <class Law, class L>
   }
 }
 
+/// In place of a field that is not there.
+struct Nothing {
+  Nothing(const KernelArguments&, const Vector4*) {}
+};
+
 template <class Law, class Support, bool kDamped>
 double EvaluatePoints(const KernelArguments& a) {
-  ClearSlots(a, a.slots);
+  Vector4* slots = ClearSlots(a, a.slots);
+  const ChunkField<Vector4> field(a, a.field);
+  std::conditional_t<kDamped, ChunkField<Vector4>, Nothing> still(a, a.still);
   const Law law(a.lame.mu, a.lame.lambda);
   Lanes energy = {};
   for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
     const Support support(*a.group, batch);
     const Lanes volume = VolumeOf<Lanes>(a, batch);
     Lanes modes[Support::kModes][3], F[9], P[9];
-    support.Gradient(a.field, modes, F);
-    energy += volume * law.Stress(F, P) + support.StabilisationEnergy(modes);
+    support.Gradient(field.data(), modes, F);
+    law.Stress(F, P);
+    energy += support.StabilisationEnergy(modes);
     if constexpr (kDamped) {
       Lanes way[Support::kModes][3], dF[9], dP[9], tangent[Law::kTangentSize];
-      support.Gradient(a.still, way, dF);
+      support.Gradient(still.data(), way, dF);
       for (int k = 0; k < support.count(); ++k) {
         for (int i = 0; i < 3; ++i) way[k][i] = modes[k][i] - way[k][i];
       }
@@ -234,18 +257,20 @@ double EvaluatePoints(const KernelArguments& a) {
       }
     }
     for (int i = 0; i < 9; ++i) P[i] *= volume;
-    support.Scatter(P, modes, a.slots);
+    support.Scatter(P, modes, slots);
+    energy += volume * law.Stress(F, P);  // last, so that no force waits for it; the compiler does what both need once
   }
   return Sum(energy);
 }
 
 template <class Law, class Support>
 void LinearisePoints(const KernelArguments& a) {
+  const ChunkField<Vector4> field(a, a.field);
   const Law law(a.lame.mu, a.lame.lambda);
   for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
     const Support support(*a.group, batch);
     Lanes modes[Support::kModes][3], F[9], tangent[Law::kTangentSize];
-    support.Gradient(a.field, modes, F);
+    support.Gradient(field.data(), modes, F);
     law.Linearise(F, tangent, a.filtered);
     const std::size_t first = static_cast<std::size_t>(batch) * Law::kTangentSize * kLanes;
     for (int i = 0; i < Law::kTangentSize; ++i) {
@@ -259,14 +284,15 @@ void LinearisePoints(const KernelArguments& a) {
 }
 
 template <class Law, class L, class Support, class Vector>
-[[gnu::always_inline]] inline void Product(const KernelArguments& a, const Vector* field, Vector* slots) {
-  ClearSlots(a, slots);
+[[gnu::always_inline]] inline void Product(const KernelArguments& a, const Vector* of_particles, Vector* all_slots) {
+  Vector* slots = ClearSlots(a, all_slots);
+  const ChunkField<Vector> field(a, of_particles);
   const Law law(a.lame.mu, a.lame.lambda);
   for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
     const Support support(*a.group, batch);
     const L volume = VolumeOf<L>(a, batch);
     L modes[Support::kModes][3], dF[9], dP[9], tangent[Law::kTangentSize];
-    support.Gradient(field, modes, dF);
+    support.Gradient(field.data(), modes, dF);
     LoadTangent<Law>(a, batch, tangent);
     law.Differential(tangent, dF, dP);
     for (int i = 0; i < 9; ++i) dP[i] *= volume;
@@ -286,8 +312,8 @@ void SingleProductPoints(const KernelArguments& a) {
 
 template <class Law, class Support>
 void DiagonalOfPoints(const KernelArguments& a) {
-  ClearSlots(a, a.slots);
-  ClearSlots(a, a.slots + a.slot_count);
+  Vector4* slots = ClearSlots(a, a.slots);
+  Vector4* more_slots = ClearSlots(a, a.slots + a.slot_count);
   const Law law(a.lame.mu, a.lame.lambda);
   for (int batch = a.chunk.begin; batch < a.chunk.end; ++batch) {
     const Support support(*a.group, batch);
@@ -301,8 +327,8 @@ void DiagonalOfPoints(const KernelArguments& a) {
       const Lanes s = support.StabilisationDiagonal(k);
       const Lanes diagonal[3] = {volume * block[0] + s, volume * block[4] + s, volume * block[8] + s};
       const Lanes off_diagonal[3] = {volume * block[1], volume * block[2], volume * block[5]};
-      AddParticles(diagonal, support.slot + k * kLanes, a.slots);
-      AddParticles(off_diagonal, support.slot + k * kLanes, a.slots + a.slot_count);
+      AddParticles(diagonal, support.slot + k * kLanes, slots);
+      AddParticles(off_diagonal, support.slot + k * kLanes, more_slots);
     }
   }
 }
