@@ -101,7 +101,7 @@ void Dynamics::Parts::TissueChanged(const Tissue& tissue, const std::function<vo
   for (Field* field :
        {&position, &velocity, &acceleration, &start_position, &start_velocity, &start_acceleration, &end_position,
         &end_velocity, &end_acceleration, &stage, &steady, &still, &scratch, &elastic_force}) {
-    field->resize(particles);
+    ResizeWithRoom(*field, particles);
   }
   chunk_sums.resize(ChunkCount(particles, kParticlesPerChunk));
   for (int j = 0; j < particles; ++j) {

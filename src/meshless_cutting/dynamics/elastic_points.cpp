@@ -25,8 +25,8 @@ void ElasticPoints::TissueChanged(const Tissue& tissue) {
   groups_.Build(tissue, stabilisation_);
   particles_ = tissue.particle_count();
   chunk_energy_.resize(groups_.chunks.size());
-  slots_.resize(std::size_t{2} * groups_.slot_count);  // the diagonal takes two
-  single_slots_.resize(groups_.slot_count);
+  ResizeWithRoom(slots_, std::size_t{2} * groups_.slot_count);  // the diagonal takes two
+  ResizeWithRoom(single_slots_, groups_.slot_count);
   slots_[groups_.slot_count - 1] = slots_.back() = Vector4();
   single_slots_.back() = SingleVector4();
 }
@@ -97,7 +97,7 @@ template <class Tangent>
 void ElasticPoints::Resize(Tangent& tangent) const {
   tangent.groups.resize(groups_.groups.size());
   for (std::size_t g = 0; g < groups_.groups.size(); ++g) {
-    tangent.groups[g].resize(static_cast<std::size_t>(groups_.groups[g].batches) * kernels_[g].tangent_size * kLanes);
+    ResizeWithRoom(tangent.groups[g], static_cast<std::size_t>(groups_.groups[g].batches) * kernels_[g].tangent_size * kLanes);
   }
 }
 

@@ -61,6 +61,14 @@ using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 using Field = AlignedVector<Vector4>;
 using SingleField = AlignedVector<SingleVector4>;
 
+/// Sizes an array that cuts make longer. There is room for twice as much, made while the object is loaded: to double all arrays
+/// in the frame of the first cut took 25 ms for 10,000 particles.
+template <class T, class Allocator>
+void ResizeWithRoom(std::vector<T, Allocator>& array, std::size_t size) {
+  if (size > array.capacity()) array.reserve(2 * size);
+  array.resize(size);
+}
+
 /// Particles that one task of a parallel loop takes. Fixed, so that sums do not depend on the number of threads.
 constexpr int kParticlesPerChunk = 256;
 

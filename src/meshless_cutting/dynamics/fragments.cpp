@@ -6,7 +6,7 @@ namespace meshless_cutting {
 
 void Fragments::Build(const Tissue& tissue) {
   const int particles = tissue.particle_count(), K = tissue.support_size;
-  parent_.resize(particles);
+  ResizeWithRoom(parent_, particles);
   for (int j = 0; j < particles; ++j) parent_[j] = j;
   const auto find = [&](int j) {
     while (parent_[j] != j) {
@@ -25,7 +25,7 @@ void Fragments::Build(const Tissue& tissue) {
       root = std::min(root, other);
     }
   }
-  of_particle.resize(particles);
+  ResizeWithRoom(of_particle, particles);
   held.clear();
   for (int j = 0; j < particles; ++j) {
     const int root = find(j);  // root <= j: numbered already unless it is j

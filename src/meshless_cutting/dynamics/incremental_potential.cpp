@@ -17,13 +17,13 @@ double SumOf(const std::vector<double>& values) {
 }  // namespace
 
 void IncrementalPotential::Resize(int particles) {
-  inertia.resize(particles);
-  free.resize(particles);
-  weight.resize(particles);
-  target.resize(particles);
+  ResizeWithRoom(inertia, particles);
+  ResizeWithRoom(free, particles);
+  ResizeWithRoom(weight, particles);
+  ResizeWithRoom(target, particles);
   if (!terms_.empty()) {
-    wide_.resize(particles);
-    of_terms_.resize(particles);
+    ResizeWithRoom(wide_, particles);
+    ResizeWithRoom(of_terms_, particles);
   }
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
   gradient_sums_.resize(chunk_sums_.size());

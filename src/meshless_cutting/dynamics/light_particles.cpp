@@ -48,8 +48,8 @@ void LightParticles::ForgetChanged(const Tissue& tissue) {
     followers_.clear();
   }
   touched_.assign(tissue.particle_count(), 0);
-  followers_.resize(tissue.particle_count());
-  weights_.resize(tissue.particle_count() * K);
+  ResizeWithRoom(followers_, tissue.particle_count());
+  ResizeWithRoom(weights_, static_cast<std::size_t>(tissue.particle_count()) * K);
   for (std::size_t p = 0; p < tissue.point_volume.size(); ++p) {
     const int* now = &tissue.point_particles[p * K];
     const bool is_new = p >= point_volume_.size();
@@ -76,7 +76,7 @@ void LightParticles::ListPoints(const Tissue& tissue) {
   point_begin_.assign(tissue.particle_count() + 1, 0);
   for (int j : tissue.point_particles) ++point_begin_[j];
   for (int j = 1; j <= tissue.particle_count(); ++j) point_begin_[j] += point_begin_[j - 1];
-  points_.resize(tissue.point_particles.size());
+  ResizeWithRoom(points_, tissue.point_particles.size());
   shared_.assign(tissue.point_count(), 0);
   for (int p = tissue.point_count() - 1; p >= 0; --p) {
     for (int k = 0; k < support_; ++k) points_[--point_begin_[tissue.point_particles[p * support_ + k]]] = p;

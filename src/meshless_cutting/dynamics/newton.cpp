@@ -42,8 +42,8 @@ constexpr double kEnergyRounding = 1e-13;
 void NewtonSolver::TissueChanged(const Tissue& tissue) {
   const int particles = tissue.particle_count();
   preconditioner_.TissueChanged(tissue, potential_);
-  for (Field* field : {&gradient_, &trial_, &trial_gradient_}) field->resize(particles);
-  for (SingleField* field : {&step_, &residual_, &direction_, &product_}) field->resize(particles);
+  for (Field* field : {&gradient_, &trial_, &trial_gradient_}) ResizeWithRoom(*field, particles);
+  for (SingleField* field : {&step_, &residual_, &direction_, &product_}) ResizeWithRoom(*field, particles);
   chunk_sums_.resize(ChunkCount(particles, kParticlesPerChunk));
 }
 

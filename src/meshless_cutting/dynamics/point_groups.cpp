@@ -45,15 +45,18 @@ void FillGeneral(const Tissue& tissue, int p, const Eigen::Vector3d& mean, Point
 void Resize(PointGroup& group) {
   const std::size_t lanes = static_cast<std::size_t>(group.batches) * kLanes, K = group.support;
   const bool is_general = group.shape == SupportShape::kGeneral;
-  group.point.assign(lanes, -1);
-  group.particle.resize(lanes * K);
-  group.slot.resize(lanes * K);
-  group.volume.assign(lanes, 0);
-  group.stabilisation.assign(lanes, 0);
-  group.box.resize(is_general ? 0 : lanes * 3);
-  group.hourglass.resize(group.shape == SupportShape::kBox ? lanes * 12 : 0);
+  ResizeWithRoom(group.point, lanes);
+  ResizeWithRoom(group.particle, lanes * K);
+  ResizeWithRoom(group.slot, lanes * K);
+  ResizeWithRoom(group.volume, lanes);
+  ResizeWithRoom(group.stabilisation, lanes);
+  std::fill(group.point.begin(), group.point.end(), -1);
+  std::fill(group.volume.begin(), group.volume.end(), 0.0);
+  std::fill(group.stabilisation.begin(), group.stabilisation.end(), 0.0);
+  ResizeWithRoom(group.box, is_general ? 0 : lanes * 3);
+  ResizeWithRoom(group.hourglass, group.shape == SupportShape::kBox ? lanes * 12 : 0);
   for (AlignedVector<double>* array : {&group.gradient, &group.fit, &group.offset}) {
-    array->resize(is_general ? lanes * K * 3 : 0);
+    ResizeWithRoom(*array, is_general ? lanes * K * 3 : 0);
   }
 }
 
@@ -123,8 +126,8 @@ void PointGroups::SortNewPoints(const Tissue& tissue) {
     largest = std::max(largest, tissue.point_volume[p]);
   }
   const double cell = std::max(std::cbrt(largest), 1e-5 * bounds.sizes().maxCoeff());
-  curve_.resize(points);
-  order_.resize(points);
+  ResizeWithRoom(curve_, points);
+  ResizeWithRoom(order_, points);
   for (int p = known; p < points; ++p) {
     curve_[p] = cell > 0 ? MortonCode(((tissue.point_rest[p] - bounds.min()) / cell).cast<int>()) : 0;
     order_[p] = p;
@@ -145,8 +148,8 @@ void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffne
   groups.resize(stiffness.size() * kSupportShapes);
   counts_.assign(groups.size(), 0);
   const auto group_of = [&](int p) { return tissue.material(p) * kSupportShapes + static_cast<int>(supports_[p].shape); };
-  supports_.resize(tissue.point_count());
-  places.resize(tissue.point_count());
+  ResizeWithRoom(supports_, tissue.point_count());
+  ResizeWithRoom(places, tissue.point_count());
   for (int p = 0; p < tissue.point_count(); ++p) {
     if (!IsDescribed(tissue, p)) supports_[p] = DescribeSupport(tissue, p);
     ++counts_[group_of(p)];
@@ -167,8 +170,10 @@ void PointGroups::Build(const Tissue& tissue, const std::vector<double>& stiffne
     places[p] = PlaceOf(g, tissue.support_size, groups[g].placed++, counts_[g]);
     Put(tissue, p, support, stabilisation, places[p], groups[g]);
   }
-  described_rest_ = tissue.point_rest;
-  described_particles_ = tissue.point_particles;
+  ResizeWithRoom(described_rest_, tissue.point_rest.size());
+  ResizeWithRoom(described_particles_, tissue.point_particles.size());
+  std::copy(tissue.point_rest.begin(), tissue.point_rest.end(), described_rest_.begin());
+  std::copy(tissue.point_particles.begin(), tissue.point_particles.end(), described_particles_.begin());
   for (PointGroup& group : groups) FillEmptyLanes(group);
   BuildSlots(tissue.particle_count());
 }
@@ -220,13 +225,13 @@ void PointGroups::BuildSlots(int particles) {
   slot_begin_.assign(particles + 1, 0);
   for (int j : slot_particle) ++slot_begin_[j + 1];
   for (int j = 0; j < particles; ++j) slot_begin_[j + 1] += slot_begin_[j];
-  slot_of_.resize(slots);
+  ResizeWithRoom(slot_of_, slots);
   for (int slot = slots - 1; slot >= 0; --slot) slot_of_[--slot_begin_[slot_particle[slot] + 1]] = slot;
   // Filling from the back moved each end down to the start of its own row, one place too high.
   std::copy(slot_begin_.begin() + 1, slot_begin_.end(), slot_begin_.begin());
   slot_begin_[particles] = slots;
 
-  first_slot.resize(particles);
+  ResizeWithRoom(first_slot, particles);
   more_slots.clear();
   more_begin.clear();
   for (int j = 0; j < particles; ++j) {

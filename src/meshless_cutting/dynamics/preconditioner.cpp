@@ -39,9 +39,9 @@ SingleBlock InverseOf(const SymmetricBlock& b) {
 void Preconditioner::TissueChanged(const Tissue& tissue, const IncrementalPotential& potential) {
   const std::size_t particles = tissue.particle_count(), known = inverse_.size();
   is_due_ = true;
-  diagonal_.resize(particles);
-  inverse_.resize(particles);
-  scaled_.resize(particles);
+  ResizeWithRoom(diagonal_, particles);
+  ResizeWithRoom(inverse_, particles);
+  ResizeWithRoom(scaled_, particles);
   chunk_sums_.resize(ChunkCount(tissue.particle_count(), kParticlesPerChunk));
   if (known == 0 || particles < known) {
     BuildCoarse(tissue, potential);
@@ -67,7 +67,7 @@ void Preconditioner::BuildCoarse(const Tissue& tissue, const IncrementalPotentia
 
 void Preconditioner::PrepareTransfer() {
   const Aggregates& aggregates = coarse_.aggregates();
-  basis_.resize(aggregates.basis.size());
+  ResizeWithRoom(basis_, aggregates.basis.size());
   std::transform(aggregates.basis.begin(), aggregates.basis.end(), basis_.begin(), Round);
   runs_.clear();
   for (int a = 0; a < aggregates.count(); ++a) {
