@@ -48,8 +48,8 @@ start() {
   disown
 }
 
-# The clock stands at 100 s until the file "go" appears, runs for the given time and stands again. It waits for the simulator: no
-# more than two frames of 1/60 s ahead.
+# The clock stands at 100 s until the file "go" appears, runs for the given time and stands again. From its first frame on it waits
+# for the simulator, which begins with the tool's first sample: no more than three frames of 1/60 s farther ahead than then.
 cat >"$work/clock.py" <<'PYTHON'
 import os, sys, time
 import rospy
@@ -59,13 +59,16 @@ rospy.init_node('clock', disable_rostime=True)
 publisher = rospy.Publisher('/clock', Clock, queue_size=10)
 frames = []
 rospy.Subscriber('/simulator/statistics', rospy.AnyMsg, frames.append)
-step, now, waited = 0.002, 0.0, 0
+step, now, waited, began = 0.002, 0.0, 0, None
 while not rospy.is_shutdown():
     publisher.publish(Clock(rospy.Time.from_sec(100 + now)))
     time.sleep(0.004)
     if not os.path.exists(go):
         frames.clear()
-    elif len(frames) < 60 * now - 3 and waited < 1000:
+        began = None
+    elif frames and began is None:
+        began = now
+    elif began is not None and len(frames) < 60 * (now - began) - 3 and waited < 1000:
         waited += 1
     elif now < seconds:
         now, waited = now + step, 0
