@@ -47,10 +47,9 @@ void ThreadPool::Run(Function function, const void* context, int count) {
     seat.function = function;
     seat.context = context;
     seat.left.store(StretchOf(tasks * t / threads, tasks * (t + 1) / threads), std::memory_order_release);
-    seat.loop.store(seat.loop.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    if (t > 0) seat.loop.store(seat.loop.load(std::memory_order_relaxed) + 1);
   }
-  std::atomic_thread_fence(std::memory_order_seq_cst);
-  if (sleepers_.load(std::memory_order_relaxed) > 0) {
+  if (sleepers_.load() > 0) {
     for (int t = 1; t < thread_count_; ++t) FutexWakeAll(seats_[t].loop);
   }
 

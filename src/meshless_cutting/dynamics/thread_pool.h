@@ -45,7 +45,7 @@ class ThreadPool {
   /// A thread's place.
   struct Seat {
     // What it is told.
-    alignas(64) std::atomic<std::uint32_t> loop{0};  // loops begun
+    alignas(64) std::atomic<std::uint32_t> loop{0};  // loops begun, of a thread that is not the caller
     Function function = nullptr;
     const void* context = nullptr;
     std::atomic<std::uint64_t> left{0};  // of its stretch, end and next in one word: it takes from the front, others from the back
@@ -55,10 +55,10 @@ class ThreadPool {
   };
 
   void Run(Function function, const void* context, int count);
-  /// Runs what is left of a stretch from its front (one's own) or its back; how many tasks that were.
-  int TakeFromOthers(int thread);
+  /// Runs what is left of a stretch from its front or its back; how many tasks that were.
   template <bool kFromFront>
   static int TakeFrom(Seat& seat);
+  int TakeFromOthers(int thread);
   bool AllDone() const;
   void Answer(Seat& seat, int done);
   void Work(int thread);
