@@ -12,12 +12,12 @@ constexpr int kFunctions = CoarseMatrix::kFunctions;
 /// What an integration point sees of one aggregate's functions b_c: gradients, and what their fit by an affine field
 /// needs. The functions side by side, which the compiler packs.
 struct Share {
-  int aggregate = -1;
-  double sum[kFunctions] = {};                 // sum_k b_c(k)
-  double gradient[3][kFunctions] = {};         // sum_k b_c(k) dphi_k/dX
-  double fit[3][kFunctions] = {};              // sum_k b_c(k) fit_k
-  double offset[3][kFunctions] = {};           // sum_k b_c(k) offset_k
-  double square[kFunctions][kFunctions] = {};  // sum_k b_c(k) b_d(k)
+  int aggregate;
+  double sum[kFunctions];                 // sum_k b_c(k)
+  double gradient[3][kFunctions];         // sum_k b_c(k) dphi_k/dX
+  double fit[3][kFunctions];              // sum_k b_c(k) fit_k
+  double offset[3][kFunctions];           // sum_k b_c(k) offset_k
+  double square[kFunctions][kFunctions];  // sum_k b_c(k) b_d(k)
 };
 
 /// Gradient, row of the affine fit and rest offset of particle k of a point, whatever its shape. Fit and offset of a

@@ -11,11 +11,6 @@ namespace meshless_cutting {
 void AddCoarseOfPoint(const PointKernels& kernels, const KernelArguments& arguments, const PointPlace& place,
                       double factor, int row, CoarseMatrix& matrix);
 
-/// The same for points that have particles of aggregate `row` alone: its functions are affine, so that all of them strain alike
-/// and their stabilisation is nothing. `tensor`: sum of theirs, see PointKernels; `place`: one of them, of `group`.
-void AddCoarseOfTensor(const PointGroup& group, const PointPlace& place, const double (*tensor)[9], double factor, int row,
-                       CoarseMatrix& matrix);
-
 /// The same for all points that have particles of aggregate `row` alone: its functions are affine, so that these points strain
 /// alike and their stabilisation is nothing. `tensor`: sum over them, see PointKernels; `place`: of one of them, of `group`.
 void AddCoarseOfTensor(const PointGroup& group, const PointPlace& place, const double (*tensor)[9], double factor, int row,

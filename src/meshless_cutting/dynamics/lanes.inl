@@ -86,9 +86,6 @@ template <class L>
 }
 #endif
 
-/// A particle of a chunk, by its slot.
-using Slot = std::uint16_t;
-
 /// The vectors of eight particles, one to a lane.
 [[gnu::always_inline]] inline void LoadParticles(const Vector4* field, const Slot* slot, Lanes* v) {
 #if defined(MESHLESS_CUTTING_LANES_AVX512)

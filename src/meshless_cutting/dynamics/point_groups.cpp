@@ -214,7 +214,7 @@ void PointGroups::BuildSlots(int particles) {
         slot_of_[j] = static_cast<int>(slot_particle.size());
         slot_particle.push_back(j);
       }
-      group.slot[at] = static_cast<std::uint16_t>(slot_of_[j] - chunk.first_slot);
+      group.slot[at] = static_cast<Slot>(slot_of_[j] - chunk.first_slot);
     }
     chunk.last_slot = static_cast<int>(slot_particle.size());
   }

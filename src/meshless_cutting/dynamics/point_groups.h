@@ -18,6 +18,9 @@ constexpr int kLanes = 8;
 /// and sums for them stays in the first level cache.
 constexpr int kSlotsPerChunk = 2048;
 
+/// A particle of a task: its place among those of the task.
+using Slot = std::uint16_t;
+
 /// Batches that one task takes.
 constexpr int BatchesPerChunk(int support) { return kSlotsPerChunk / (kLanes * support); }
 
@@ -31,7 +34,7 @@ struct PointGroup {
 
   std::vector<int> point;             // [batch][lane] index in Tissue; -1 in filling lanes
   std::vector<int> particle;          // [batch][K][lane]; corners of a box in the order of their bits
-  std::vector<std::uint16_t> slot;    // [batch][K][lane]; of the particle, counted from the first of the chunk
+  std::vector<Slot> slot;             // [batch][K][lane]; of the particle, counted from the first of the chunk
   AlignedVector<double> volume;         // [batch][lane] V, m^3
   AlignedVector<double> stabilisation;  // [batch][lane] S, N/m: energy S/2 sum_k |x_k - affine fit|^2
 

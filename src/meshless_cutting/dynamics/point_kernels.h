@@ -15,7 +15,7 @@ struct KernelArguments {
   const PointGroup* group = nullptr;
   PointChunk chunk;
   int slot_count = 0;  // size of a buffer of slots
-  const int* slot_particle = nullptr;
+  const int* slot_particle = nullptr;  // see PointGroups
   LameConstants lame;
   const Vector4* field = nullptr;  // per particle: positions, m, or a direction
   Vector4* slots = nullptr;        // buffer of slots

@@ -25,10 +25,10 @@ class Preconditioner {
   /// Takes the tangent that `potential` was linearised at last.
   void Refresh(IncrementalPotential& potential);
 
-  // z = B r, zero where particles are not free, in three parts so that what goes over the particles can be done together with
-  // what else goes over them. The first and the last in parallel, for each chunk of kParticlesPerChunk.
+  // z = B r, zero where particles are not free, in three parts, each together with what else conjugate gradients do to the same
+  // particles. The first and the last in parallel, for each chunk of kParticlesPerChunk.
 
-  /// Moves along `direction`, H direction = product, then takes the residual: see field_loops. Returns its weighted square.
+  /// step += alpha direction, residual -= alpha product; the residual is the r of what follows. Returns its weighted square.
   double AdvanceSolution(int chunk, double alpha, const SingleField& direction, const SingleField& product,
                          const std::vector<double>& weight, SingleField& step, SingleField& residual);
   /// Returns r . z.

@@ -15,7 +15,7 @@ namespace meshless_cutting {
 /// before it began. What is left to wait for is a task that is being run; a thread that waits spins for a moment and
 /// then sleeps, and never yields: to a busy neighbour a yield gives away milliseconds.
 ///
-/// A cache line takes a quarter of a microsecond from one processor to another. Hence all that a thread is told comes in one
+/// A cache line takes up to a quarter of a microsecond from one processor to another. Hence all that a thread is told comes in one
 /// line, and what it answers is in a line that nobody else writes to.
 class ThreadPool {
  public:
