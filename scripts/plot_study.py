@@ -119,9 +119,13 @@ def solver_error(rows, folder, header):
     groups = by(sorted(sweep, key=lambda r: (r['youngs_modulus_pa'], r['poisson_ratio'], r['particles'])),
                 lambda r: (r['particles'], r['youngs_modulus_pa'], r['poisson_ratio']))
     draw(panes[0], groups, 'wall_ms_per_frame_p50', 'error_solver',
-         lambda k: f'{k[0]:.0f} particles, {k[1] / 1000:g} kPa, ν {k[2]:g}')
+         lambda k: f'{k[0]:,.0f} particles, {k[1] / 1e3:g} kPa, ν {k[2]:g}' if k[1] < 1e6 else
+         f'{k[0]:,.0f} particles, {k[1] / 1e6:g} MPa, ν {k[2]:g}')
     panes[0].set(xscale='log', yscale='log', xlabel='wall time per frame, median [ms]', ylabel='solver error, rms of the tip [%]')
-    panes[0].set_title('1, 2, 4, 8 Newton iterations at most', fontsize=9)
+    panes[0].set_xticks([2, 5, 10, 20, 50])
+    panes[0].set_xticklabels(['2', '5', '10', '20', '50'])
+    panes[0].minorticks_off()
+    panes[0].set_title('1 to 8 Newton iterations at most', fontsize=9)
     deadline(panes[0])
     panes[0].legend(frameon=False, fontsize=6, loc='center left', bbox_to_anchor=(1.0, 0.5))
     if not stiff:
